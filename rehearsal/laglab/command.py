@@ -1,0 +1,56 @@
+"""The ``laglab`` command."""
+
+import sys
+
+import click
+import typer
+
+from laglab.commands import compare, fmu, run, scenarios, sides
+from laglab.errors import LaglabError, RunError, ScenarioError
+from laglab.processes import SIDE_ERRORS
+from laglab_controller import StationError
+from laglab_gateway import CommandError, StationSilentError
+from laglab_protocol import FarEndGoneError, FarEndStalledError
+
+app = typer.Typer(
+    help="A rehearsal rig for robots controlled across a network.",
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    add_completion=False,
+)
+app.command("run")(run.run)
+app.command("scenarios")(scenarios.scenarios)
+app.command("compare")(compare.compare)
+app.command("gateway")(sides.gateway)
+app.command("controller")(sides.controller)
+app.add_typer(fmu.app, name="fmu")
+
+LINK_LOST = (StationError, StationSilentError, CommandError, FarEndGoneError, FarEndStalledError)
+"""What ends a run that had begun; the other errors of a side are the user's to mend."""
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run one command; whatever the user did wrong is one line on standard error."""
+    sys.exit(_exit_code(arguments))
+
+
+def _exit_code(arguments: list[str] | None) -> int:
+    try:
+        code = app(arguments, standalone_mode=False)
+    except click.ClickException as error:
+        return _say(error.format_message(), error.exit_code)
+    except LaglabError as error:
+        return _say(str(error), error.exit_code)
+    except LINK_LOST as error:
+        return _say(str(error), RunError.exit_code)
+    except SIDE_ERRORS as error:
+        return _say(str(error), ScenarioError.exit_code)
+    except (click.Abort, KeyboardInterrupt):
+        return _say("interrupted", 130)
+    return int(code or 0)
+
+
+def _say(text: str, exit_code: int) -> int:
+    print(f"laglab: {' '.join(text.split())}", file=sys.stderr)
+    return exit_code

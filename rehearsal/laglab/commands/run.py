@@ -1,0 +1,84 @@
+"""``laglab run``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+
+from laglab.errors import RunError
+from laglab.options import on_scenario
+from laglab.rehearse import Ending, Transport, rehearse
+from laglab.report import results_table, write_results
+from laglab.scenario import Scenario
+from laglab_gateway import TRACE_FILE, Trace, TraceError, read_trace
+from laglab_protocol import EndReason
+
+EXIT_CODES = {
+    EndReason.COMPLETED: 0,
+    EndReason.DIVERGED: 3,
+    EndReason.INTERRUPTED: 130,
+    EndReason.FAILED: 1,
+}
+
+OutOption = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Where the results go; runs/SCENARIO otherwise."),
+]
+
+
+@on_scenario
+def run(
+    scenario: Scenario,
+    transport: Annotated[
+        Transport, typer.Option(help="What is between the two processes; inline is one process.")
+    ] = "udp",
+    out: OutOption = None,
+) -> None:
+    """Rehearse SCENARIO: robot and controller, the delayed link between them, and the verdict."""
+    directory = out or fresh_directory(Path("runs"), scenario.name)
+    with progress_bar() as bar:
+        task = bar.add_task(scenario.name, total=scenario.last_tick)
+        ending = rehearse(
+            scenario, transport, directory, lambda tick: bar.update(task, completed=tick)
+        )
+        bar.update(task, refresh=True)
+    summary = write_results(scenario, transport, ending, _trace(directory, ending), directory)
+    console = Console()
+    console.print(results_table(summary))
+    console.print(f"{summary['verdict']}", highlight=False, soft_wrap=True)
+    console.print(f"results in {directory}", highlight=False, soft_wrap=True)
+    raise typer.Exit(_exit_code(ending))
+
+
+def progress_bar() -> Progress:
+    """Ticks done of ticks to do, on standard error."""
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TextColumn("tick {task.completed}/{task.total}"),
+        TimeElapsedColumn(),
+        console=Console(stderr=True),
+    )
+
+
+def fresh_directory(parent: Path, name: str) -> Path:
+    """``parent/name``, or with a number behind it where an earlier run's results are."""
+    directory, number = parent / name, 1
+    while directory.exists():
+        number += 1
+        directory = parent / f"{name}-{number}"
+    return directory
+
+
+def _trace(directory: Path, ending: Ending) -> Trace:
+    try:
+        return read_trace(directory / TRACE_FILE)
+    except TraceError:
+        raise RunError(ending.problem or "the run ended before its first tick") from None
+
+
+def _exit_code(ending: Ending) -> int:
+    return EXIT_CODES[ending.outcome.reason] if ending.outcome else RunError.exit_code

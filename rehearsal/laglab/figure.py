@@ -1,0 +1,96 @@
+"""The paper's figures."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from laglab.errors import RunError
+from laglab.scenario import Scenario
+from laglab_gateway import Trace
+
+FIGURE_FILE = "figure.png"
+DOTS_PER_INCH = 120
+
+
+def draw_run(trace: Trace, scenario: Scenario) -> Figure:
+    """Three panels as in Figs. 4 to 7: path in the plane, heading, speeds."""
+    return draw_side_by_side([(trace, scenario)])
+
+
+def draw_side_by_side(runs: Sequence[tuple[Trace, Scenario]]) -> Figure:
+    """The same three panels for each run, a row each."""
+    figure = Figure(figsize=(13, 4 * len(runs)), layout="constrained")
+    rows = np.atleast_1d(figure.subfigures(len(runs), 1))
+    for row, (trace, scenario) in zip(rows, runs, strict=True):
+        plane, heading, speeds = row.subplots(1, 3)
+        draw_path(plane, trace, scenario)
+        draw_heading(heading, trace, scenario)
+        draw_speeds(speeds, trace)
+        row.suptitle(title(scenario))
+    return figure
+
+
+def title(scenario: Scenario) -> str:
+    """The scenario in a line: name, filter and delays."""
+    return (
+        f"{scenario.name}: {scenario.estimator}, "
+        f"n = {scenario.command_delay}, m = {scenario.measurement_delay}"
+    )
+
+
+def draw_path(axes: Axes, trace: Trace, scenario: Scenario) -> None:
+    """The robot's path, from its start to the goal's pose."""
+    axes.plot(trace["x"], trace["y"], label="path")
+    axes.plot(trace["x"][0], trace["y"][0], "o", label="start")
+    x, y, _ = scenario.goal
+    axes.plot(x, y, "*", markersize=12, label="goal")
+    axes.set(xlabel="x [m]", ylabel="y [m]", title="path", aspect="equal", adjustable="datalim")
+    axes.legend()
+    axes.grid(alpha=0.3)
+
+
+def draw_heading(axes: Axes, trace: Trace, scenario: Scenario) -> None:
+    """Heading over time, and the goal's."""
+    axes.plot(trace["time"], trace["theta"])
+    axes.axhline(scenario.goal[2], color="grey", linestyle=":", label="goal")
+    axes.set(xlabel="t [s]", ylabel="θ [rad]", title="heading")
+    axes.legend()
+    axes.grid(alpha=0.3)
+
+
+def draw_speeds(axes: Axes, trace: Trace) -> None:
+    """The speeds in force over time."""
+    axes.plot(trace["time"], trace["v"], label="v [m/s]")
+    axes.plot(trace["time"], trace["omega"], label="ω [rad/s]")
+    axes.set(xlabel="t [s]", title="speeds")
+    axes.legend()
+    axes.grid(alpha=0.3)
+
+
+def draw_deviations(
+    time: NDArray[np.float64], deviations: Mapping[str, NDArray[np.float64]], scenario: Scenario
+) -> Figure:
+    """Three panels as in Fig. 8: each filter's estimate less the pose, in x, y and θ."""
+    figure = Figure(figsize=(13, 4), layout="constrained")
+    labels = ("x [m]", "y [m]", "θ [rad]")
+    for axis, (axes, label) in enumerate(zip(figure.subplots(1, 3), labels, strict=True)):
+        for name, deviation in deviations.items():
+            axes.plot(time, deviation[:, axis], label=name)
+        axes.axhline(0.0, color="grey", linestyle=":")
+        axes.set(xlabel="t [s]", title=f"deviation in {label}")
+        axes.legend()
+        axes.grid(alpha=0.3)
+    figure.suptitle(f"{title(scenario)}: estimate less pose, all filters fed the same record")
+    return figure
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write the figure as a PNG. Raises: RunError, when the file cannot be written."""
+    try:
+        figure.savefig(path, format="png", dpi=DOTS_PER_INCH)
+    except OSError as error:
+        raise RunError(f"cannot draw {path}: {error.strerror}") from error

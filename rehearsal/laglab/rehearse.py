@@ -1,0 +1,130 @@
+"""One rehearsal: start the two sides, follow them, and keep what they leave."""
+
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from multiprocessing.connection import wait
+from pathlib import Path
+from typing import Literal
+
+from laglab.inline import InlineEndpoint
+from laglab.processes import (
+    SIDE_ERRORS,
+    Failed,
+    Finished,
+    Listening,
+    LoopClock,
+    Progress,
+    Report,
+    Side,
+    gateway_process,
+    started,
+    station_process,
+)
+from laglab.scenario import Scenario
+from laglab.sides import open_gateway, station_config
+from laglab_controller import Station
+from laglab_gateway import FileRecorder, Outcome, Patience, serve
+
+Transport = Literal["inline", "udp", "serial"]
+
+SCENARIO_FILE = "scenario.toml"
+NOTICE_SECONDS = 4.0
+"""What a gateway needs to find that its station is silent, and a little more."""
+
+
+@dataclass(frozen=True)
+class Ending:
+    """How the two sides ended: an outcome, or the problem that cut them short."""
+
+    outcome: Outcome | None
+    problem: str | None
+    loop_seconds: float
+
+
+def rehearse(
+    scenario: Scenario, transport: Transport, directory: Path, progress: Callable[[int], None]
+) -> Ending:
+    """Run both sides to the end; trace, log and scenario are then in ``directory``."""
+    directory.mkdir(parents=True, exist_ok=True)
+    (directory / SCENARIO_FILE).write_text(scenario.to_toml(), encoding="utf-8")
+    if transport == "inline":
+        return _inline(scenario, directory, progress)
+    with _gateway_url(transport) as url:
+        return _two_processes(scenario, url, directory, progress)
+
+
+def _inline(scenario: Scenario, directory: Path, progress: Callable[[int], None]) -> Ending:
+    clock = LoopClock(progress)
+    try:
+        with open_gateway(scenario) as gateway, closing(FileRecorder(directory)) as recorder:
+            endpoint = InlineEndpoint(Station(station_config(scenario)))
+            outcome = serve(gateway, endpoint, recorder, Patience(), clock)
+    except SIDE_ERRORS as error:
+        return Ending(None, str(error), clock.seconds)
+    return Ending(outcome, None, clock.seconds)
+
+
+@contextmanager
+def _gateway_url(transport: Transport) -> Iterator[str]:
+    if transport == "udp":
+        yield "udpin://127.0.0.1:0"
+    else:
+        with tempfile.TemporaryDirectory(prefix="laglab-") as directory:
+            yield f"pty://{directory}/robot"
+
+
+def far_end(address: str) -> str:
+    """The address a station opens to reach a gateway that listens at ``address``."""
+    scheme, _, place = address.partition("://")
+    return f"udpout://{place}" if scheme == "udpin" else f"serial://{place}:57600"
+
+
+def _two_processes(
+    scenario: Scenario, url: str, directory: Path, progress: Callable[[int], None]
+) -> Ending:
+    with started("gateway", gateway_process, scenario, url, directory) as gateway:
+        match gateway.next_report():
+            case Listening(address):
+                station_url = far_end(address)
+            case report:
+                return _ending(report, [], 0.0)
+        with started("controller", station_process, scenario, station_url) as station:
+            try:
+                return _follow(gateway, station, progress)
+            except KeyboardInterrupt:
+                gateway.stop()
+                return _follow(gateway, station, progress)
+
+
+def _follow(gateway: Side, station: Side, progress: Callable[[int], None]) -> Ending:
+    """Read both sides' reports until the gateway's last one.
+
+    A gateway whose station is gone gets the time to notice and say so, and no more.
+    """
+    problems: list[str] = []
+    loop_seconds = 0.0
+    watched = [gateway.reports, station.reports]
+    while ready := wait(watched, timeout=NOTICE_SECONDS if problems else None):
+        if station.reports in ready:
+            watched.remove(station.reports)
+            if isinstance(report := station.next_report(), Failed):
+                problems.append(report.reason)
+        if gateway.reports in ready:
+            match gateway.next_report():
+                case Progress(tick, loop_seconds):
+                    progress(tick)
+                case report:
+                    return _ending(report, problems, loop_seconds)
+    return Ending(None, "; ".join(problems), loop_seconds)
+
+
+def _ending(report: Report, problems: list[str], loop_seconds: float) -> Ending:
+    match report:
+        case Finished(outcome, seconds):
+            return Ending(outcome, None, seconds)
+        case Failed(reason):
+            return Ending(None, "; ".join([reason, *problems]), loop_seconds)
+        case _:
+            raise AssertionError(f"{report} ends no run")

@@ -1,0 +1,85 @@
+"""What a run leaves for its reader: a table, the verdict, a figure and a summary."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.table import Table
+
+from laglab.figure import FIGURE_FILE, draw_deviations, draw_run, save
+from laglab.rehearse import Ending, Transport
+from laglab.scenario import Scenario
+from laglab.sides import robot_model
+from laglab.summary import deviation, loop_estimates, rms_error, summarise, write_summary
+from laglab_controller import ESTIMATORS, constant_delay, replay
+from laglab_gateway import Trace
+
+
+def write_results(
+    scenario: Scenario, transport: Transport, ending: Ending, trace: Trace, directory: Path
+) -> dict[str, Any]:
+    """Write ``summary.json`` and ``figure.png``; returns the summary."""
+    summary = summarise(scenario, transport, ending, trace)
+    if scenario.compare:
+        deviations = compare(scenario, trace)
+        summary["compare"] = {
+            name: rms_error(values, scenario.measurement_delay)
+            for name, values in deviations.items()
+        }
+        figure = draw_deviations(trace["time"], deviations, scenario)
+    else:
+        figure = draw_run(trace, scenario)
+    write_summary(summary, directory)
+    save(figure, directory / FIGURE_FILE)
+    return summary
+
+
+def compare(scenario: Scenario, trace: Trace) -> dict[str, NDArray[np.float64]]:
+    """Deviations of the estimator in the loop, and of each in ``compare`` on the same record."""
+    estimates = {scenario.estimator: loop_estimates(trace)} | {
+        name: reestimate(scenario, name, trace) for name in scenario.compare
+    }
+    return {name: deviation(trace, values) for name, values in estimates.items()}
+
+
+def reestimate(scenario: Scenario, name: str, trace: Trace) -> NDArray[np.float64]:
+    """What the named estimator makes of a record, shape (ticks + 1, 3)."""
+    estimator = ESTIMATORS[name].make(robot_model(scenario))
+    inputs = np.stack([trace["v"], trace["omega"]], axis=1)[:-1]
+    measurements = np.stack([trace[f"{axis}_meas"] for axis in ("x", "y", "theta")], axis=1)
+    return replay(
+        estimator,
+        scenario.first_estimate(),
+        scenario.initial_covariance * np.eye(3),
+        inputs,
+        constant_delay(measurements, scenario.measurement_delay),
+    ).estimates
+
+
+def results_table(summary: dict[str, Any]) -> Table:
+    """The summary's numbers, for reading."""
+    table = Table(box=None, show_header=False)
+    delays = f"{summary['n']} and {summary['m']} ticks"
+    final = summary["final"]
+    factor = summary["real_time_factor"]
+    rows = {
+        "scenario": f"{summary['scenario']} (seed {summary['seed']}, {summary['transport']})",
+        "estimator": summary["estimator"],
+        "delays n, m": delays,
+        "at the end": f"ρ {final['rho']:.3g} m, θ error {final['theta_error']:.3g} rad, "
+        f"v {final['v']:.3g} m/s, ω {final['omega']:.3g} rad/s",
+        "RMS error of the estimate": _errors(summary["rms_error"]),
+        **{f"  {name}": _errors(errors) for name, errors in summary.get("compare", {}).items()},
+        "speed": f"{summary['ticks']} ticks in {summary['wall_time_s']:.2f} s"
+        + (f", {factor:.1f} × real time" if factor else ""),
+    }
+    for name, value in rows.items():
+        table.add_row(name, value)
+    return table
+
+
+def _errors(errors: dict[str, float] | None) -> str:
+    if errors is None:
+        return "none: nothing was estimated"
+    return f"x {errors['x']:.3g} m, y {errors['y']:.3g} m, θ {errors['theta']:.3g} rad"

@@ -1,0 +1,179 @@
+"""Scenarios: what is run, as TOML files, checked field by field."""
+
+import re
+import tomllib
+from collections.abc import Mapping
+from importlib import resources
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+import tomlkit
+from numpy.typing import NDArray
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    FiniteFloat,
+    NonNegativeInt,
+    ValidationError,
+    field_validator,
+    model_validator,
+)
+
+from laglab.errors import ScenarioError
+from laglab_controller import ESTIMATORS
+
+SHIPPED = resources.files("laglab") / "scenarios"
+
+
+def _split_pose(value: object) -> object:
+    if not isinstance(value, str) or re.fullmatch(r"\s*[a-z]+\s*", value):
+        return value
+    try:
+        return [float(part) for part in value.split(",")]
+    except ValueError:
+        raise ValueError(f"{value!r} is not X,Y,THETA") from None
+
+
+Pose = Annotated[
+    tuple[FiniteFloat, FiniteFloat, FiniteFloat],
+    BeforeValidator(_split_pose),
+]
+"""x [m], y [m], theta [rad]; on the command line ``X,Y,THETA``."""
+Positive = Annotated[FiniteFloat, Field(gt=0)]
+Variance = Annotated[FiniteFloat, Field(ge=0)]
+
+
+class Scenario(BaseModel):
+    """One rehearsal, whole. SI units; delays in ticks; the defaults are the paper's."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    name: str = ""
+    description: str = ""
+    estimator: str = "popf"
+    compare: tuple[str, ...] = ()
+    start: Pose = (-3.0, -3.0, 0.0)
+    goal: Pose = (0.0, 0.0, 0.0)
+    command_delay: NonNegativeInt = 10
+    measurement_delay: NonNegativeInt = 20
+    duration: Positive = 10.0
+    seed: Annotated[int, Field(ge=0, lt=2**31)] = 1
+    noise: bool = False
+    fmi: Literal[2, 3] = 3
+    initial_covariance: Variance = 1e-4
+    initial_estimate: Annotated[
+        Pose | Literal["start", "drawn"], Field(union_mode="left_to_right")
+    ] = "start"
+    gamma: Positive = 3.0
+    lambda_: Annotated[Positive, Field(alias="lambda")] = 6.0
+    h: Positive = 1.0
+    v_max: Positive | None = None
+    omega_max: Positive | None = None
+    goal_tolerance: Positive | None = None
+    sample_time: Positive = 0.01
+    wheel_radius: Positive = 0.05
+    track: Positive = 0.6
+    wheel_noise_variance: Variance = 0.01
+    measurement_variance: tuple[Positive, Positive, Positive] = (0.01, 0.01, 0.018)
+
+    @field_validator("estimator")
+    @classmethod
+    def _known_estimator(cls, name: str) -> str:
+        if name not in ESTIMATORS:
+            raise ValueError(f"{name!r} is not one of {', '.join(ESTIMATORS)}")
+        return name
+
+    @field_validator("compare")
+    @classmethod
+    def _comparable(cls, names: tuple[str, ...]) -> tuple[str, ...]:
+        for name in names:
+            if cls._known_estimator(name) == "raw":
+                raise ValueError("'raw' estimates nothing that could be compared")
+        return names
+
+    @model_validator(mode="after")
+    def _whole_ticks(self) -> "Scenario":
+        if self.last_tick < 1:
+            raise ValueError("duration: shorter than one sample_time")
+        return self
+
+    @property
+    def last_tick(self) -> int:
+        """The tick at which the run ends: duration / Ts."""
+        return round(self.duration / self.sample_time)
+
+    def first_estimate(self) -> NDArray[np.float64]:
+        """x̂_0, shape (3,): the true start, a pose, or drawn from N(start, P_0) by the seed."""
+        match self.initial_estimate:
+            case "start":
+                return np.array(self.start)
+            case "drawn":
+                draw = np.random.default_rng(self.seed).standard_normal(3)
+                return np.array(self.start) + np.sqrt(self.initial_covariance) * draw
+            case pose:
+                return np.array(pose)
+
+    def to_toml(self) -> str:
+        """The scenario as a file that ``load`` reads back to an equal one."""
+        fields = self.model_dump(by_alias=True, exclude_none=True)
+        return tomlkit.dumps({key: _plain(value) for key, value in fields.items()})
+
+
+def _plain(value: Any) -> Any:
+    return list(value) if isinstance(value, tuple) else value
+
+
+def shipped() -> dict[str, Scenario]:
+    """The scenarios that come with the package, by name."""
+    return {name: load(name) for name in _shipped_names()}
+
+
+def _shipped_names() -> list[str]:
+    names = (Path(file.name) for file in SHIPPED.iterdir())
+    return sorted(name.stem for name in names if name.suffix == ".toml")
+
+
+def load(reference: str, overrides: Mapping[str, object] | None = None) -> Scenario:
+    """A scenario by its shipped name or by a path to a TOML file; ``overrides`` beat the file.
+
+    Raises:
+        ScenarioError: no such scenario, not TOML, or a field that cannot be.
+    """
+    fields, name = _read(reference)
+    fields = {"name": name} | fields | dict(overrides or {})
+    try:
+        return Scenario.model_validate(fields)
+    except ValidationError as error:
+        raise ScenarioError(f"{reference}: {_first_problem(error)}") from None
+
+
+def _read(reference: str) -> tuple[dict[str, object], str]:
+    path = SHIPPED / f"{reference}.toml"
+    if "/" in reference or not path.is_file():
+        path = Path(reference)
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8")), Path(path.name).stem
+    except (FileNotFoundError, IsADirectoryError):
+        names = ", ".join(_shipped_names())
+        raise ScenarioError(
+            f"{reference}: no such scenario; shipped: {names}; or give a path to a TOML file"
+        ) from None
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise ScenarioError(f"{reference}: not a readable TOML file: {error}") from None
+
+
+def _first_problem(error: ValidationError) -> str:
+    problem = error.errors()[0]
+    field = ".".join(str(part) for part in problem["loc"][:1])
+    match problem["type"]:
+        case "extra_forbidden":
+            known = ", ".join(info.alias or key for key, info in Scenario.model_fields.items())
+            return f"{field}: unknown key; known: {known}"
+        case "value_error":
+            text = str(problem["ctx"]["error"])
+        case _:
+            text = f"{problem['msg']} (got {problem['input']!r})"
+    return f"{field}: {text}" if field else text

@@ -1,0 +1,121 @@
+"""The verdict on a run, from its trace."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from laglab.rehearse import Ending, Transport
+from laglab.scenario import Scenario
+from laglab_controller import wrap
+from laglab_gateway import Trace
+from laglab_protocol import EndReason
+
+SUMMARY_FILE = "summary.json"
+DISTANCE_BOUND = 0.06
+HEADING_BOUND = 0.05
+
+Errors = dict[str, float]
+
+
+_wrapped = np.vectorize(wrap, otypes=[np.float64])
+
+
+def goal_errors(trace: Trace, scenario: Scenario) -> tuple[NDArray[np.float64], ...]:
+    """Distance to the goal ρ [m] and heading error [rad] at every tick."""
+    x, y, theta = scenario.goal
+    rho = np.hypot(trace["x"] - x, trace["y"] - y)
+    return rho, _wrapped(trace["theta"] - theta)
+
+
+def has_converged(trace: Trace, scenario: Scenario) -> bool:
+    """ρ < 0.06 m and |θ error| < 0.05 rad at every tick of the last second."""
+    rho, theta_error = goal_errors(trace, scenario)
+    last_second = trace["time"] >= trace["time"][-1] - 1.0
+    at_goal = (rho < DISTANCE_BOUND) & (np.abs(theta_error) < HEADING_BOUND)
+    return bool(at_goal[last_second].all())
+
+
+def deviation(trace: Trace, estimates: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Estimate less pose, shape (ticks + 1, 3), heading wrapped."""
+    pose = np.stack([trace["x"], trace["y"], trace["theta"]], axis=1)
+    difference = estimates - pose
+    difference[:, 2] = _wrapped(difference[:, 2])
+    return difference
+
+
+def loop_estimates(trace: Trace) -> NDArray[np.float64]:
+    """x̂_k of the estimator in the loop, shape (ticks + 1, 3)."""
+    return np.stack([trace["x_est"], trace["y_est"], trace["theta_est"]], axis=1)
+
+
+def rms_error(deviations: NDArray[np.float64], measurement_delay: int) -> Errors | None:
+    """Root mean square over ticks ≥ m; None where nothing was estimated."""
+    settled = deviations[measurement_delay:]
+    if not len(settled) or np.isnan(settled).all():
+        return None
+    with np.errstate(over="ignore"):
+        values = np.sqrt(np.mean(settled**2, axis=0))
+    return dict(zip(("x", "y", "theta"), values.tolist(), strict=True))
+
+
+def summarise(
+    scenario: Scenario, transport: Transport, ending: Ending, trace: Trace
+) -> dict[str, Any]:
+    """The contents of ``summary.json``; values that are not finite become null."""
+    rho, theta_error = goal_errors(trace, scenario)
+    completed = ending.outcome is not None and ending.outcome.reason is EndReason.COMPLETED
+    ticks = int(trace["tick"][-1])
+    simulated = ticks * scenario.sample_time
+    summary = {
+        "scenario": scenario.name,
+        "estimator": scenario.estimator,
+        "n": scenario.command_delay,
+        "m": scenario.measurement_delay,
+        "seed": scenario.seed,
+        "transport": transport,
+        "ticks": ticks,
+        "final": {
+            "rho": float(rho[-1]),
+            "theta_error": float(theta_error[-1]),
+            "v": float(trace["v"][-1]),
+            "omega": float(trace["omega"][-1]),
+        },
+        "rms_error": rms_error(deviation(trace, loop_estimates(trace)), scenario.measurement_delay),
+        "converged": completed and has_converged(trace, scenario),
+        "wall_time_s": ending.loop_seconds,
+        "real_time_factor": simulated / ending.loop_seconds if ending.loop_seconds else None,
+    }
+    summary["verdict"] = _verdict(ending, summary)
+    return summary
+
+
+def _verdict(ending: Ending, summary: dict[str, Any]) -> str:
+    if ending.outcome is None:
+        return f"cut short at tick {summary['ticks']}: {ending.problem}"
+    tick = ending.outcome.tick
+    match ending.outcome.reason:
+        case EndReason.DIVERGED:
+            return f"stopped at tick {tick}: the estimate diverged (not finite, or beyond 1 km)"
+        case EndReason.INTERRUPTED:
+            return f"interrupted at tick {tick}"
+        case EndReason.FAILED:
+            return f"stopped at tick {tick}: the controller failed"
+    final = summary["final"]
+    word = "converged" if summary["converged"] else "did not converge"
+    return f"{word}: at the end ρ = {final['rho']:.3g} m, θ error = {final['theta_error']:.3g} rad"
+
+
+def write_summary(summary: dict[str, Any], directory: Path) -> None:
+    """Keep the summary beside the trace."""
+    text = json.dumps(_finite(summary), indent=2, ensure_ascii=False)
+    (directory / SUMMARY_FILE).write_text(text + "\n", encoding="utf-8")
+
+
+def _finite(value: Any) -> Any:
+    """JSON has no NaN and no infinity: they become null."""
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    return None if isinstance(value, float) and not np.isfinite(value) else value

@@ -1,0 +1,143 @@
+"""The gateway's core against a station made of the codec alone, around the real FMU."""
+
+from collections.abc import Iterator
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from laglab_fmu import Robot, RobotParameters
+from laglab_gateway import CommandError, FmuPlant, Gateway, GatewayConfig, Outcome
+from laglab_protocol import (
+    NO_COMMAND,
+    ROBOT_COMPONENT,
+    ROBOT_SYSTEM,
+    STATION_COMPONENT,
+    STATION_SYSTEM,
+    Command,
+    End,
+    EndReason,
+    Estimate,
+    Measurement,
+    Receiver,
+    Sender,
+    Tick,
+)
+
+PARAMETERS = RobotParameters(start=(-3.0, -3.0, 0.0), noise=True, seed=5)
+LAST_TICK = 30
+
+
+@pytest.fixture(scope="module")
+def robot() -> Iterator[Robot]:
+    with Robot.open(3, PARAMETERS) as opened:
+        yield opened
+
+
+def gateway_of(robot: Robot, n: int, m: int, last_tick: int = LAST_TICK) -> Gateway:
+    robot.reset(PARAMETERS)
+    plant = FmuPlant(robot, PARAMETERS.wheel_radius, PARAMETERS.track)
+    return Gateway(plant, GatewayConfig(n, m, last_tick, PARAMETERS.sample_time))
+
+
+class Station:
+    """Says what the test says."""
+
+    def __init__(self, system: int = STATION_SYSTEM) -> None:
+        self._sender = Sender(system, STATION_COMPONENT)
+
+    def say(self, *messages: tuple[object, ...]) -> bytes:
+        return b"".join(self._sender.frame(message) for message in messages)
+
+
+def command(tick: int, v: float = 0.0, estimates: int = 0) -> Command:
+    return Command(v, v / 2, tick, ROBOT_SYSTEM, ROBOT_COMPONENT, estimates)
+
+
+def heard(frames: list[bytes]) -> list[tuple[object, ...]]:
+    return [frame.message for frame in Receiver().receive(b"".join(frames))]
+
+
+@settings(deadline=None, max_examples=60)
+@given(n=st.integers(0, 35), m=st.integers(0, 35))
+def test_both_delays_are_exact(robot: Robot, n: int, m: int) -> None:
+    gateway, station = gateway_of(robot, n, m), Station()
+    rows = []
+    while gateway.outcome is None:
+        k = gateway.tick
+        *measurements, tick = heard(gateway.open_tick())
+        assert tick == Tick(k, len(measurements))
+        if k < m:
+            assert not measurements
+        else:
+            s = k - m
+            sample = rows[s] if m else None
+            (z,) = measurements
+            assert isinstance(z, Measurement)
+            assert z.tick == s
+            assert z.command_tick == (s - 1 - n if s - 1 - n >= 0 else NO_COMMAND)
+            if sample:
+                assert z[:3] == (sample.x_meas, sample.y_meas, sample.theta_meas)
+            if s:
+                assert (z.v, z.omega) == (rows[s - 1].v, rows[s - 1].omega)
+        gateway.receive(station.say(command(k, v=0.1 + k)), datagram=True)
+        rows.append(gateway.close_tick())
+    assert gateway.outcome == Outcome(EndReason.COMPLETED, LAST_TICK)
+    for k, row in enumerate(rows):
+        assert row.tick == k
+        assert row.v == (rows[k - n].v_sent if k >= n else 0.0)
+
+
+def test_a_repeated_tick_brings_the_same_messages_in_new_frames(robot: Robot) -> None:
+    gateway = gateway_of(robot, 0, 0)
+    first, again = gateway.open_tick(), gateway.repeat_tick()
+    assert heard(first) == heard(again)
+    assert first != again
+
+
+def test_only_the_stations_command_for_this_tick_answers_it(robot: Robot) -> None:
+    gateway, station = gateway_of(robot, 0, 0), Station()
+    gateway.open_tick()
+    gateway.receive(station.say(command(7)), datagram=True)
+    gateway.receive(Station(system=42).say(command(0)), datagram=True)
+    gateway.receive(b"\xfd\x12 no frame at all", datagram=True)
+    assert not gateway.answered
+    gateway.receive(station.say(command(0)), datagram=True)
+    assert gateway.answered
+
+
+def test_an_answer_that_lost_its_estimate_waits_for_the_repeat(robot: Robot) -> None:
+    gateway, station = gateway_of(robot, 0, 0), Station()
+    gateway.open_tick()
+    estimate = Estimate(1.0, 2.0, 3.0, *[0.0] * 6, 0)
+    gateway.receive(station.say(command(0, estimates=1)), datagram=False)
+    assert not gateway.answered
+    gateway.receive(station.say(estimate, command(0, estimates=1)), datagram=False)
+    assert gateway.answered
+    assert gateway.close_tick()[8:11] == (1.0, 2.0, 3.0)
+
+
+def test_the_last_tick_is_not_stepped(robot: Robot) -> None:
+    gateway, station = gateway_of(robot, 0, 0, last_tick=0), Station()
+    before = robot.read()
+    gateway.open_tick()
+    gateway.receive(station.say(command(0, v=1.0)), datagram=True)
+    gateway.close_tick()
+    assert gateway.outcome == Outcome(EndReason.COMPLETED, 0)
+    assert robot.read() == before
+
+
+def test_the_stations_end_ends_the_run_at_this_tick(robot: Robot) -> None:
+    gateway, station = gateway_of(robot, 0, 0), Station()
+    gateway.open_tick()
+    gateway.receive(station.say(End(0, EndReason.DIVERGED), command(0)), datagram=True)
+    gateway.close_tick()
+    assert gateway.outcome == Outcome(EndReason.DIVERGED, 0)
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf")])
+def test_a_command_that_is_not_finite_moves_nothing(robot: Robot, value: float) -> None:
+    gateway, station = gateway_of(robot, 0, 0), Station()
+    gateway.open_tick()
+    with pytest.raises(CommandError, match="tick 0 is not finite"):
+        gateway.receive(station.say(command(0, v=value)), datagram=True)

@@ -1,0 +1,221 @@
+"""A lost datagram, a dead peer, a Ctrl-C, an estimate gone wild: the run survives or says why."""
+
+import json
+import multiprocessing
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from laglab.rehearse import Ending, rehearse
+from laglab.scenario import load
+from laglab_gateway import read_trace
+from laglab_protocol import EndReason
+
+Laglab = Callable[..., subprocess.CompletedProcess[str]]
+Start = Callable[..., "subprocess.Popen[str]"]
+NOTICED_WITHIN = 5.0
+
+
+@pytest.fixture
+def start(tmp_path: Path) -> Iterator[Start]:
+    """Start ``laglab ARGUMENTS`` in the background; whatever still runs at the end is ended."""
+    running: list[subprocess.Popen[str]] = []
+
+    def call(*arguments: str) -> "subprocess.Popen[str]":
+        process = subprocess.Popen(
+            [sys.executable, "-m", "laglab", *arguments],
+            cwd=tmp_path,
+            stderr=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            text=True,
+        )
+        running.append(process)
+        return process
+
+    yield call
+    for process in running:
+        process.kill()
+        process.communicate()
+
+
+def listening_port(gateway: "subprocess.Popen[str]") -> str:
+    assert gateway.stderr is not None
+    found = re.search(r"listening on udpin://127\.0\.0\.1:(\d+)", gateway.stderr.readline())
+    assert found
+    return found[1]
+
+
+def wait_for_rows(trace: Path, rows: int) -> None:
+    while not trace.exists() or trace.read_bytes().count(b"\n") <= rows:
+        time.sleep(0.02)
+
+
+def assert_whole(trace: Path) -> None:
+    text = trace.read_text()
+    assert text.endswith("\n")
+    columns = read_trace(trace)
+    assert columns["tick"].tolist() == list(range(len(columns["tick"])))
+
+
+class LossyWire:
+    """A UDP relay on loopback that swallows every 7th datagram of either direction."""
+
+    def __init__(self, port: int) -> None:
+        self._near = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._near.bind(("127.0.0.1", 0))
+        self._far = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._far.connect(("127.0.0.1", port))
+        self.port = self._near.getsockname()[1]
+        self.swallowed = 0
+        self._passed = 0
+        self._caller: Any = None
+        self._closing = False
+        self._threads = [
+            threading.Thread(target=self._relay, args=(self._near, self._to_far)),
+            threading.Thread(target=self._relay, args=(self._far, self._to_caller)),
+        ]
+        for sock in (self._near, self._far):
+            sock.settimeout(0.1)
+        for thread in self._threads:
+            thread.start()
+
+    def _relay(self, source: socket.socket, forward: Callable[[bytes], None]) -> None:
+        while not self._closing:
+            try:
+                data, sender = source.recvfrom(2048)
+            except (TimeoutError, ConnectionRefusedError):
+                continue
+            if source is self._near:
+                self._caller = sender
+            self._passed += 1
+            if self._passed % 7 == 0:
+                self.swallowed += 1
+            else:
+                forward(data)
+
+    def _to_far(self, data: bytes) -> None:
+        self._far.send(data)
+
+    def _to_caller(self, data: bytes) -> None:
+        self._near.sendto(data, self._caller)
+
+    def close(self) -> None:
+        self._closing = True
+        for thread in self._threads:
+            thread.join()
+        self._near.close()
+        self._far.close()
+
+
+def test_lost_datagrams_change_nothing(start: Start, laglab: Laglab, tmp_path: Path) -> None:
+    options = ("lab", "--duration", "0.6")
+    assert laglab("run", *options, "--transport", "inline", "--out", "calm").returncode == 0
+    gateway = start("gateway", *options, "--endpoint", "udpin://127.0.0.1:0", "--out", "lossy")
+    wire = LossyWire(int(listening_port(gateway)))
+    try:
+        station = start("controller", *options, "--endpoint", f"udpout://127.0.0.1:{wire.port}")
+        assert gateway.wait(30) == 0
+        station.wait(30)
+    finally:
+        wire.close()
+    assert wire.swallowed > 10
+    traces = [(tmp_path / name / "trace.csv").read_bytes() for name in ("calm", "lossy")]
+    assert traces[0] == traces[1]
+
+
+def test_a_dead_controller_is_noticed_by_the_gateway(start: Start, tmp_path: Path) -> None:
+    options = ("fig6", "--duration", "3600")
+    gateway = start("gateway", *options, "--endpoint", "udpin://127.0.0.1:0", "--out", "run")
+    station = start(
+        "controller", *options, "--endpoint", f"udpout://127.0.0.1:{listening_port(gateway)}"
+    )
+    wait_for_rows(tmp_path / "run" / "trace.csv", 50)
+    station.kill()
+    killed = time.monotonic()
+    _, errors = gateway.communicate(timeout=10)
+    assert time.monotonic() - killed < NOTICED_WITHIN
+    assert gateway.returncode == 4
+    assert re.search(r"laglab: the controller has been silent since tick \d+", errors)
+    assert "Traceback" not in errors
+    assert_whole(tmp_path / "run" / "trace.csv")
+
+
+def test_a_dead_gateway_is_noticed_by_the_controller(start: Start, tmp_path: Path) -> None:
+    options = ("fig6", "--duration", "3600")
+    gateway = start("gateway", *options, "--endpoint", "udpin://127.0.0.1:0", "--out", "run")
+    station = start(
+        "controller", *options, "--endpoint", f"udpout://127.0.0.1:{listening_port(gateway)}"
+    )
+    wait_for_rows(tmp_path / "run" / "trace.csv", 50)
+    gateway.kill()
+    killed = time.monotonic()
+    _, errors = station.communicate(timeout=10)
+    assert time.monotonic() - killed < NOTICED_WITHIN
+    assert station.returncode == 4
+    assert re.search(r"laglab: .*since tick \d+", errors)
+    assert "Traceback" not in errors
+    assert_whole(tmp_path / "run" / "trace.csv")
+
+
+@pytest.mark.parametrize("victim", ["gateway", "controller"])
+@pytest.mark.parametrize("transport", ["udp", "serial"])
+def test_a_run_whose_side_is_killed_says_which(victim: str, transport: Any, tmp_path: Path) -> None:
+    def kill(tick: int) -> None:
+        for child in multiprocessing.active_children():
+            if tick > 20 and child.name == victim and child.pid is not None:
+                os.kill(child.pid, signal.SIGKILL)
+
+    scenario = load("fig6", {"duration": 3600.0})
+    started = time.monotonic()
+    ending: Ending = rehearse(scenario, transport, tmp_path, kill)
+    assert time.monotonic() - started < 10 + NOTICED_WITHIN
+    assert ending.outcome is None
+    assert f"the {victim} process was killed by SIGKILL" in str(ending.problem)
+    assert not multiprocessing.active_children()
+    assert_whole(tmp_path / "trace.csv")
+
+
+def test_ctrl_c_ends_cleanly_with_results_written(start: Start, tmp_path: Path) -> None:
+    run = start("run", "fig6", "--duration", "3600", "--out", "run")
+    wait_for_rows(tmp_path / "run" / "trace.csv", 50)
+    run.send_signal(signal.SIGINT)
+    _, errors = run.communicate(timeout=20)
+    assert run.returncode == 130
+    assert "Traceback" not in errors
+    assert_whole(tmp_path / "run" / "trace.csv")
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text())
+    assert summary["verdict"].startswith("interrupted at tick")
+
+
+@pytest.mark.parametrize("transport", ["inline", "udp", "serial"])
+def test_an_estimate_beyond_a_kilometre_stops_the_robot(
+    laglab: Laglab, tmp_path: Path, transport: str
+) -> None:
+    result = laglab(
+        "run", "fig8", "--p0", "0.1", "--duration", "60", "--transport", transport, "--out", "run"
+    )
+    assert result.returncode == 3
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text())
+    trace = read_trace(tmp_path / "run" / "trace.csv")
+    last = int(trace["tick"][-1])
+    assert f"stopped at tick {last}" in summary["verdict"]
+    assert summary["verdict"] in result.stdout
+    assert trace["v_sent"][-1] == trace["omega_sent"][-1] == 0
+    assert not abs(trace["x_est"][-1]) < 1000 or not abs(trace["y_est"][-1]) < 1000
+    assert (tmp_path / "run" / "figure.png").exists()
+
+
+def test_a_run_is_complete_only_at_its_last_tick(tmp_path: Path) -> None:
+    ending = rehearse(load("fig6", {"duration": 0.3}), "udp", tmp_path, lambda _: None)
+    assert ending.outcome is not None
+    assert ending.outcome == (EndReason.COMPLETED, 30)

@@ -1,0 +1,86 @@
+"""Every command in the README does what it says."""
+
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+COMMANDS = [
+    line
+    for block in re.findall(r"```sh\n(.*?)```", README, re.DOTALL)
+    for line in block.splitlines()
+    if line
+]
+INSTALL_AND_RUN, INSTALL_AND_TEST = (line for line in COMMANDS if "-m venv" in line)
+TWO_SIDES = [line for line in COMMANDS if line.startswith(("laglab gateway", "laglab controller"))]
+OTHERS = [line for line in COMMANDS if line.startswith("laglab") and line not in TWO_SIDES]
+
+
+def arguments(command: str) -> list[str]:
+    return [sys.executable, "-m", *shlex.split(command)]
+
+
+def test_nothing_in_the_readme_is_left_out() -> None:
+    assert {INSTALL_AND_RUN, INSTALL_AND_TEST, *TWO_SIDES, *OTHERS} == set(COMMANDS)
+
+
+def test_each_command_works(tmp_path: Path) -> None:
+    for command in OTHERS:
+        result = subprocess.run(
+            arguments(command),
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
+        )
+        assert result.returncode == 0, f"{command}: {result.stderr}"
+        assert result.stdout or "compare" in command
+
+
+def test_the_two_sides_find_each_other(tmp_path: Path) -> None:
+    sides = [
+        subprocess.Popen(arguments(command), cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+        for command in TWO_SIDES
+    ]
+    try:
+        for side in sides:
+            _, errors = side.communicate(timeout=60)
+            assert side.returncode == 0, errors
+    finally:
+        for side in sides:
+            side.kill()
+            side.communicate()
+    assert (tmp_path / "runs" / "gateway" / "trace.csv").exists()
+
+
+def test_ci_runs_the_readmes_test_command() -> None:
+    script = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+    (grep,) = re.findall(r"\$\((grep .*)\)", script)
+    found = subprocess.run(
+        ["bash", "-c", grep], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert found.stdout.strip() == INSTALL_AND_TEST
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(300)
+def test_a_bare_clone_installs_and_runs(tmp_path: Path) -> None:
+    tracked = subprocess.run(
+        ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout
+    for name in filter(None, tracked.split("\0")):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, tmp_path / name)
+    result = subprocess.run(
+        ["bash", "-c", INSTALL_AND_RUN], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert result.returncode == 0, result.stderr
+    assert "converged" in result.stdout
+    assert (tmp_path / "runs" / "fig6" / "figure.png").exists()

@@ -1,0 +1,99 @@
+"""What a run leaves behind, and what it does not."""
+
+import csv
+import json
+import subprocess
+import sys
+import sysconfig
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from laglab.scenario import load
+from laglab_gateway import read_trace
+
+Laglab = Callable[..., subprocess.CompletedProcess[str]]
+
+
+@pytest.fixture
+def run(laglab: Laglab, tmp_path: Path) -> Path:
+    result = laglab("run", "fig8", "--seed", "3", "--duration", "2", "--out", "run")
+    assert result.returncode == 0, result.stderr
+    assert "× real time" in result.stdout
+    return tmp_path / "run"
+
+
+def test_the_trace_has_a_row_for_every_tick(run: Path) -> None:
+    with (run / "trace.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [int(row["tick"]) for row in rows] == list(range(201))
+    header = (run / "trace.csv").read_text().splitlines()[0]
+    assert header == (
+        "tick,time,x,y,theta,x_meas,y_meas,theta_meas,x_est,y_est,theta_est,"
+        "v_sent,omega_sent,v,omega"
+    )
+    assert all(repr(float(row["x"])) == row["x"] for row in rows)
+
+
+def test_the_command_in_force_was_sent_n_ticks_earlier(run: Path) -> None:
+    trace = read_trace(run / "trace.csv")
+    assert (trace["v"][:10] == 0).all()
+    np.testing.assert_array_equal(trace["v"][10:], trace["v_sent"][:-10])
+    np.testing.assert_array_equal(trace["omega"][10:], trace["omega_sent"][:-10])
+
+
+def test_the_summary_says_how_it_went(run: Path) -> None:
+    summary = json.loads((run / "summary.json").read_text())
+    assert summary.keys() >= {
+        "scenario", "estimator", "n", "m", "seed", "transport", "ticks", "final", "rms_error",
+        "converged", "verdict", "wall_time_s", "real_time_factor",
+    }  # fmt: skip
+    assert summary["final"].keys() == {"rho", "theta_error", "v", "omega"}
+    assert (summary["n"], summary["m"], summary["seed"], summary["ticks"]) == (10, 20, 3, 200)
+    assert summary["transport"] == "udp"
+    trace = read_trace(run / "trace.csv")
+    settled = (trace["x_est"] - trace["x"])[20:]
+    assert summary["rms_error"]["x"] == pytest.approx(np.sqrt(np.mean(settled**2)))
+
+
+def test_the_scenario_reads_back_to_what_was_run(run: Path) -> None:
+    again = load(str(run / "scenario.toml"))
+    assert again == load("fig8", {"seed": 3, "duration": 2.0})
+
+
+def test_the_log_is_readable_by_mavlogdump(run: Path) -> None:
+    dump = Path(sysconfig.get_path("scripts")) / "mavlogdump.py"
+    messages = subprocess.run(
+        [sys.executable, "-W", "ignore", dump, "--types", "HEARTBEAT", run / "robot.tlog"],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    ).stdout
+    assert "HEARTBEAT" in messages
+
+
+def test_the_figure_is_a_picture(run: Path) -> None:
+    assert (run / "figure.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_an_earlier_run_is_not_overwritten(laglab: Laglab, tmp_path: Path) -> None:
+    arguments = ("run", "fig4", "--duration", "0.1", "--transport", "inline")
+    for _ in range(2):
+        assert laglab(*arguments).returncode == 0
+    assert sorted(path.name for path in (tmp_path / "runs").iterdir()) == ["fig4", "fig4-2"]
+
+
+def test_compare_draws_what_two_runs_left(laglab: Laglab, tmp_path: Path) -> None:
+    for name in ("fig4", "fig5"):
+        assert laglab("run", name, "--transport", "inline", "--out", name).returncode == 0
+    assert laglab("compare", "fig4", "fig5", "--out", "both.png").returncode == 0
+    assert (tmp_path / "both.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_scenarios_lists_all_that_ship(laglab: Laglab) -> None:
+    listed = laglab("scenarios").stdout
+    for name in ("fig4", "fig5", "fig6", "fig7", "fig8", "lab"):
+        assert name in listed
