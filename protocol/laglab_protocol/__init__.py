@@ -1,0 +1,68 @@
+"""The link: the dialect's messages, their frames, and the endpoints they travel between."""
+
+from laglab_protocol.endpoints import Endpoint, open_endpoint
+from laglab_protocol.errors import (
+    BadUrlError,
+    DialectError,
+    EndpointError,
+    FarEndGoneError,
+    FarEndStalledError,
+    NoSuchPortError,
+    PortBusyError,
+    ProtocolError,
+)
+from laglab_protocol.frame import Frame, Refusal
+from laglab_protocol.messages import (
+    NO_COMMAND,
+    ROBOT_COMPONENT,
+    ROBOT_SYSTEM,
+    STATION_COMPONENT,
+    STATION_SYSTEM,
+    Command,
+    End,
+    EndReason,
+    Estimate,
+    Heartbeat,
+    Measurement,
+    Message,
+    Tick,
+    message_type,
+)
+from laglab_protocol.receiver import Counters, Receiver
+from laglab_protocol.sender import Sender
+from laglab_protocol.tlog import TlogError, read_tlog, tlog_record
+
+__all__ = [
+    "NO_COMMAND",
+    "ROBOT_COMPONENT",
+    "ROBOT_SYSTEM",
+    "STATION_COMPONENT",
+    "STATION_SYSTEM",
+    "BadUrlError",
+    "Command",
+    "Counters",
+    "DialectError",
+    "End",
+    "EndReason",
+    "Endpoint",
+    "EndpointError",
+    "Estimate",
+    "FarEndGoneError",
+    "FarEndStalledError",
+    "Frame",
+    "Heartbeat",
+    "Measurement",
+    "Message",
+    "NoSuchPortError",
+    "PortBusyError",
+    "ProtocolError",
+    "Receiver",
+    "Refusal",
+    "Sender",
+    "Tick",
+    "TlogError",
+    "message_type",
+    "open_endpoint",
+    "read_tlog",
+    "tlog_record",
+]

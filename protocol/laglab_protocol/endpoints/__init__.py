@@ -1,0 +1,6 @@
+"""Where bytes come from and go to. Endpoints know no MAVLink."""
+
+from laglab_protocol.endpoints.interface import Endpoint
+from laglab_protocol.endpoints.url import open_endpoint
+
+__all__ = ["Endpoint", "open_endpoint"]

@@ -1,0 +1,154 @@
+"""Real serial ports, and pseudo-terminals that look like one to any other program."""
+
+import contextlib
+import os
+import tty
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+import serial
+
+from laglab_protocol.endpoints.waiting import readable, writable
+from laglab_protocol.errors import (
+    FarEndGoneError,
+    FarEndStalledError,
+    NoSuchPortError,
+    PortBusyError,
+)
+
+READ_AT_MOST = 4096
+STALL_TIMEOUT = 1.0
+"""Seconds that a full queue may stay full before the far end counts as stalled."""
+
+
+class _Tty:
+    """Reads and writes a descriptor that does not block."""
+
+    datagrams = False
+    loopback = True
+
+    def __init__(self, name: str, descriptor: int) -> None:
+        self.name = name
+        self._descriptor = descriptor
+        os.set_blocking(descriptor, False)
+
+    def fileno(self) -> int:
+        return self._descriptor
+
+    def accept_peer(self) -> None:
+        return
+
+    def receive(self, timeout: float) -> bytes:
+        if not readable(self._descriptor, timeout):
+            return b""
+        try:
+            data = os.read(self._descriptor, READ_AT_MOST)
+        except BlockingIOError:
+            return b""
+        except OSError as error:
+            raise self._gone(error.strerror) from error
+        if not data:
+            raise self._gone("hung up")
+        return data
+
+    def send(self, data: bytes) -> None:
+        while data:
+            try:
+                data = data[os.write(self._descriptor, data) :]
+            except BlockingIOError:
+                self._await_room(len(data))
+            except OSError as error:
+                raise self._gone(error.strerror) from error
+
+    def _await_room(self, waiting: int) -> None:
+        if not writable(self._descriptor, STALL_TIMEOUT):
+            raise FarEndStalledError(
+                f"{self.name}: the far end has stopped reading, {waiting} bytes cannot be sent: "
+                "see whether the program there still runs"
+            )
+
+    def _gone(self, reason: str | None) -> FarEndGoneError:
+        return FarEndGoneError(
+            f"{self.name}: the far end is gone ({reason}): plug it in again, then start again"
+        )
+
+    def close(self) -> None:
+        raise NotImplementedError
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+class SerialPort(_Tty):
+    """A serial port, or the path of somebody's pty. Held exclusively: two readers share bytes."""
+
+    def __init__(self, device: str, baud: int) -> None:
+        name = f"serial://{device}:{baud}"
+        if not Path(device).exists():
+            raise NoSuchPortError(f"{name}: no such port {device}: see which ports /dev has")
+        try:
+            self._port = serial.Serial(device, baud, timeout=0, exclusive=True)
+        except (serial.SerialException, OSError, ValueError) as error:
+            raise _cannot_open(name, error) from error
+        super().__init__(name, self._port.fileno())
+
+    def close(self) -> None:
+        self._port.close()
+
+
+class Pty(_Tty):
+    """A raw pseudo-terminal of our own, whose far end others open at `path` as a serial port."""
+
+    def __init__(self, path: str) -> None:
+        link = Path(path)
+        _make_way(link)
+        master, self._slave = os.openpty()
+        # Raw, and one far descriptor kept open here: a cooked pty echoes, a hung-up one fails.
+        tty.setraw(self._slave)
+        self._device = os.ttyname(self._slave)
+        self._link: Path | None = link
+        try:
+            link.symlink_to(self._device)
+        except OSError as error:
+            os.close(master)
+            os.close(self._slave)
+            raise NoSuchPortError(
+                f"pty://{path}: cannot make the link: {error.strerror}: choose another path"
+            ) from error
+        super().__init__(f"pty://{path}", master)
+
+    def close(self) -> None:
+        if self._link is None:
+            return
+        # A later owner may have put its own link there.
+        with contextlib.suppress(FileNotFoundError):
+            if self._link.is_symlink() and str(self._link.readlink()) == self._device:
+                self._link.unlink()
+        self._link = None
+        os.close(self._descriptor)
+        os.close(self._slave)
+
+
+def _make_way(link: Path) -> None:
+    """Remove a link that an earlier run left behind; leave anything else alone."""
+    if link.is_symlink():
+        link.unlink()
+    elif link.exists():
+        raise PortBusyError(f"pty://{link}: a file is there already: choose another path")
+
+
+def _cannot_open(name: str, error: Exception) -> NoSuchPortError | PortBusyError:
+    if "exclusively lock" in str(error):
+        return PortBusyError(f"{name}: another program holds the port: end it first")
+    if getattr(error, "errno", None) == 13:
+        return NoSuchPortError(f"{name}: not permitted: join the group that owns the port")
+    return NoSuchPortError(f"{name}: cannot open it as a serial port: {error}: check port and baud")

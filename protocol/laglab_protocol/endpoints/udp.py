@@ -1,0 +1,168 @@
+"""UDP, both ways round: `udpin` waits for a peer, `udpout` goes to one."""
+
+import ipaddress
+import socket
+import struct
+from types import TracebackType
+from typing import Any, Self
+
+from laglab_protocol.endpoints.waiting import readable
+from laglab_protocol.errors import EndpointError, NoSuchPortError, PortBusyError
+
+LARGEST_DATAGRAM = 65535
+
+KERNEL_TIMEOUT_FROM = 0.05
+"""Seconds. From here on the kernel's own receive timeout serves, which costs no extra call; it
+counts in its timer's ticks of up to 10 ms, so shorter waits are made by select."""
+
+
+class _Udp:
+    datagrams = True
+
+    def __init__(self, scheme: str, host: str, port: int) -> None:
+        self._scheme = scheme
+        family, self._address = _resolve(scheme, host, port)
+        self._socket = socket.socket(family, socket.SOCK_DGRAM)
+        self._timeout = -1.0
+
+    @property
+    def name(self) -> str:
+        return _spelled(self._scheme, self._address)
+
+    @property
+    def loopback(self) -> bool:
+        return ipaddress.ip_address(self._address[0]).is_loopback
+
+    def fileno(self) -> int:
+        return self._socket.fileno()
+
+    def close(self) -> None:
+        self._socket.close()
+
+    def accept_peer(self) -> None:
+        return
+
+    def _wait(self, timeout: float) -> int:
+        """Get ready to wait: returns the flags for the receive call, or -1 after a timeout."""
+        if timeout < KERNEL_TIMEOUT_FROM:
+            ready = readable(self._socket.fileno(), timeout)
+            return socket.MSG_DONTWAIT if ready else -1
+        if timeout != self._timeout:
+            seconds, rest = divmod(timeout, 1.0)
+            value = struct.pack("ll", int(seconds), int(rest * 1e6))
+            self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, value)
+            self._timeout = timeout
+        return 0
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+class UdpIn(_Udp):
+    """Bound to an address; sends to the peer last accepted (see Endpoint.accept_peer)."""
+
+    def __init__(self, host: str, port: int) -> None:
+        super().__init__("udpin", host, port)
+        self._last_sender: Any = None
+        self._peer: Any = None
+        try:
+            self._socket.bind(self._address)
+        except OSError as error:
+            self._socket.close()
+            raise _cannot("bind", self.name, error) from error
+        self._address = self._socket.getsockname()
+
+    def send(self, data: bytes) -> None:
+        if self._peer is not None:
+            try:
+                self._socket.sendto(data, self._peer)
+            except OSError as error:
+                raise _cannot(
+                    f"send to {self._peer[0]}:{self._peer[1]} from", self.name, error
+                ) from (error)
+
+    def receive(self, timeout: float) -> bytes:
+        flags = self._wait(timeout)
+        if flags < 0:
+            return b""
+        try:
+            data, self._last_sender = self._socket.recvfrom(LARGEST_DATAGRAM, flags)
+        except BlockingIOError:
+            return b""
+        return data
+
+    def accept_peer(self) -> None:
+        self._peer = self._last_sender
+
+
+class UdpOut(_Udp):
+    """Connected to one far address; while nobody listens there, what is sent is lost."""
+
+    def __init__(self, host: str, port: int) -> None:
+        super().__init__("udpout", host, port)
+        try:
+            self._socket.connect(self._address)
+        except OSError as error:
+            self._socket.close()
+            raise _cannot("reach", self.name, error) from error
+
+    def send(self, data: bytes) -> None:
+        try:
+            self._socket.send(data)
+        except ConnectionRefusedError:
+            self._send_again(data)
+        except OSError as error:
+            raise _cannot("send to", self.name, error) from error
+
+    def _send_again(self, data: bytes) -> None:
+        """The refusal belonged to an earlier datagram, and this one was not sent."""
+        try:
+            self._socket.send(data)
+        except ConnectionRefusedError:
+            return
+        except OSError as error:
+            raise _cannot("send to", self.name, error) from error
+
+    def receive(self, timeout: float) -> bytes:
+        flags = self._wait(timeout)
+        while flags >= 0:
+            try:
+                return self._socket.recv(LARGEST_DATAGRAM, flags)
+            except ConnectionRefusedError:
+                continue  # an earlier datagram found nobody; the error is used up, so wait
+            except BlockingIOError:
+                break
+        return b""
+
+
+def _resolve(scheme: str, host: str, port: int) -> tuple[socket.AddressFamily, Any]:
+    try:
+        found = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)
+    except OSError as error:
+        raise NoSuchPortError(
+            f"{scheme}://{host}:{port}: no such host {host!r}: give a name or address known here"
+        ) from error
+    return found[0][0], found[0][4]
+
+
+def _spelled(scheme: str, address: Any) -> str:
+    host = f"[{address[0]}]" if ":" in address[0] else address[0]
+    return f"{scheme}://{host}:{address[1]}"
+
+
+def _cannot(what: str, name: str, error: OSError) -> EndpointError:
+    if isinstance(error, PermissionError):
+        return NoSuchPortError(f"cannot {what} {name}: not permitted: take a port above 1023")
+    if error.strerror == "Address already in use":
+        return PortBusyError(
+            f"cannot {what} {name}: the port is in use: end the other program or take another port"
+        )
+    return NoSuchPortError(f"cannot {what} {name}: {error.strerror}: check host and port")

@@ -1,0 +1,104 @@
+"""MAVLink 2 frames, one at a time, without state.
+
+    FD  length  incompatibility  compatibility  sequence  system  component  id (3)
+        payload  crc (2)  [signature (13)]
+
+The payload travels without its trailing zero bytes, but never shorter than one. The CRC is
+CRC-16/MCRF4XX from `length` to the end of the payload and one more byte, which every message
+definition has of its own (https://mavlink.io/en/guide/serialization.html).
+"""
+
+import struct
+from enum import Enum, auto
+from typing import Any, NamedTuple
+
+from fastcrc import crc16
+
+from laglab_protocol.layout import LAYOUT_OF_ID, LAYOUT_OF_TYPE, layout_of
+from laglab_protocol.messages import Message
+
+START = 0xFD
+HEADER_SIZE = 10
+CRC_SIZE = 2
+SIGNATURE_SIZE = 13
+SIGNED = 0x01
+"""The only incompatibility flag that MAVLink 2 defines so far."""
+
+_new_tuple: Any = tuple.__new__
+_crc = crc16.mcrf4xx
+_pack_header = struct.Struct("<BBBBBBB3s").pack
+_unpack_header = struct.Struct("<xBBxBBBI").unpack_from  # one byte beyond the id: masked off
+
+
+class Frame(NamedTuple):
+    """A message as it travelled. `raw` is the whole frame, its signature included."""
+
+    message: Message
+    system: int
+    component: int
+    sequence: int
+    raw: bytes
+
+
+class Refusal(Enum):
+    """Why no frame is delivered from a start byte."""
+
+    INCOMPLETE = auto()
+    """So far it may be one: more bytes are needed."""
+    UNKNOWN = auto()
+    """The dialect has no message with this id, so not even the CRC can be checked."""
+    INCOMPATIBLE = auto()
+    """An incompatibility flag that we do not know: the rest may mean anything."""
+    BAD_CRC = auto()
+    """Corrupted on its way, from another version of the dialect, or no frame at all."""
+    UNSIGNED = auto()
+    """A signature is required and there is none."""
+    BAD_SIGNATURE = auto()
+    """Not signed with our key."""
+    REPLAYED = auto()
+    """Signed with our key, but no later than what this stream has already said."""
+
+
+def encode(message: Message, system: int, component: int, sequence: int, flags: int = 0) -> bytes:
+    """The frame of `message`, unsigned; `flags` are the incompatibility flags.
+
+    Raises DialectError for a class that is no message, struct.error for a value out of range.
+    """
+    layout = LAYOUT_OF_TYPE.get(type(message)) or layout_of(message)
+    payload = layout.pack(*message).rstrip(b"\0") or b"\0"
+    header = _pack_header(
+        START, len(payload), flags, 0, sequence, system, component, layout.id_bytes
+    )
+    crc = _crc(header[1:] + payload + layout.crc_extra)
+    return header + payload + crc.to_bytes(2, "little")
+
+
+def decode(buffer: bytes, start: int) -> Frame | Refusal:
+    """The frame whose start byte is at `start`, its CRC verified, its signature not.
+
+    Payloads shorter than the message are filled with zeros, longer ones (from a later version of
+    the dialect) cut: both as MAVLink 2 demands.
+    """
+    body = start + HEADER_SIZE
+    size = len(buffer)
+    if size < body + CRC_SIZE:
+        return Refusal.INCOMPLETE
+    length, flags, sequence, system, component, number = _unpack_header(buffer, start)
+    layout = LAYOUT_OF_ID.get(number & 0xFFFFFF)
+    if layout is None:
+        return Refusal.UNKNOWN
+    if flags & ~SIGNED:
+        return Refusal.INCOMPATIBLE
+    end = body + length
+    stop = end + (CRC_SIZE + SIGNATURE_SIZE if flags else CRC_SIZE)
+    if size < stop:
+        return Refusal.INCOMPLETE
+    if _crc(buffer[start + 1 : end] + layout.crc_extra) != buffer[end] | buffer[end + 1] << 8:
+        return Refusal.BAD_CRC
+    payload = buffer[body:end]
+    if length != layout.size:
+        payload = payload.ljust(layout.size, b"\0")[: layout.size]
+    # What NamedTuple._make does, without its check of the count: the struct has fixed it.
+    message = _new_tuple(layout.type, layout.unpack(payload))
+    frame: Frame = _new_tuple(Frame, (message, system, component, sequence, buffer[start:stop]))
+    return frame

@@ -1,0 +1,63 @@
+"""The committed Python, and our NamedTuples, are what the XML says."""
+
+from enum import IntEnum
+from pathlib import Path
+
+import pytest
+
+from laglab_protocol import DialectError, EndReason, message_type
+from laglab_protocol.dialect import GENERATED, dialect_path, generate
+from laglab_protocol.generated import laglab as dialect
+from laglab_protocol.messages import WRITTEN_OUT
+
+PYTHON_TYPE = {"float": float, "double": float, "char": bytes}
+
+
+def test_regenerating_gives_the_committed_bytes(tmp_path: Path) -> None:
+    generate(dialect_path(), "Python3", tmp_path / "laglab.py")
+
+    assert (tmp_path / "laglab.py").read_bytes() == GENERATED.read_bytes()
+
+
+@pytest.mark.parametrize("name", WRITTEN_OUT)
+def test_written_out_messages_are_the_xml_s(name: str) -> None:
+    written = WRITTEN_OUT[name]
+    generated = next(each for each in dialect.mavlink_map.values() if each.msgname == name)
+    types = dict(zip(generated.fieldnames, generated.fieldtypes, strict=True))
+    arrays = dict(zip(generated.ordered_fieldnames, generated.lengths, strict=True))
+
+    assert list(written._fields) == generated.ordered_fieldnames  # type: ignore[attr-defined]
+    for field, annotation in written.__annotations__.items():
+        expected = PYTHON_TYPE.get(types[field], int)
+        assert annotation == (tuple[expected, ...] if arrays[field] > 1 else expected), field
+
+
+def test_our_messages_declare_their_fields_in_wire_order() -> None:
+    ours = [each for number, each in dialect.mavlink_map.items() if number >= 52100]
+
+    assert [each.msgname for each in ours] == [name for name in WRITTEN_OUT if "LAGLAB" in name]
+    assert all(each.fieldnames == each.ordered_fieldnames for each in ours)
+
+
+@pytest.mark.parametrize(("ours", "name"), [(EndReason, "LAGLAB_END_REASON")])
+def test_enums_are_the_xml_s(ours: type[IntEnum], name: str) -> None:
+    theirs = {
+        entry.name.removeprefix(f"{name}_"): value
+        for value, entry in dialect.enums[name].items()
+        if not entry.name.endswith("_ENUM_END")
+    }
+
+    assert {each.name: each.value for each in ours} == theirs
+
+
+def test_an_unknown_name_is_refused() -> None:
+    with pytest.raises(DialectError, match="LAGLAB_NOTHING"):
+        message_type("LAGLAB_NOTHING")
+
+
+def test_what_mavgen_refuses_is_our_error(tmp_path: Path) -> None:
+    xml = tmp_path / "broken.xml"
+    xml.write_text("<mavlink><messages><message id='1'/></messages></mavlink>")
+
+    with pytest.raises(DialectError, match=r"broken\.xml"):
+        generate(xml, "Python3", tmp_path / "out.py")

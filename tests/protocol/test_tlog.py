@@ -1,0 +1,68 @@
+"""The log reads back, by us and by mavlogdump.py."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from laglab_protocol import Command, Sender, Tick, TlogError, read_tlog, tlog_record
+
+T0 = 1_700_000_000_000_000
+
+DUMP = """
+import runpy, sys
+from laglab_protocol.dialect import offer_to_pymavlink
+offer_to_pymavlink()
+sys.argv = ["mavlogdump.py", "--dialect", "laglab", {log!r}]
+runpy.run_module("pymavlink.tools.mavlogdump", run_name="__main__")
+"""
+
+
+@pytest.fixture
+def log(tmp_path: Path) -> Path:
+    robot, station = Sender(1, 1), Sender(200, 190)
+    records = [
+        tlog_record(T0, robot.frame(Tick(7, 0))),
+        tlog_record(T0 + 10_000, station.frame(Command(0.25, -1.5, 7, 1, 1, 0))),
+    ]
+    path = tmp_path / "robot.tlog"
+    path.write_bytes(b"".join(records))
+    return path
+
+
+def test_the_log_reads_back(log: Path) -> None:
+    read = [(time_us, frame.message, frame.system) for time_us, frame in read_tlog(log)]
+
+    assert read == [(T0, Tick(7, 0), 1), (T0 + 10_000, Command(0.25, -1.5, 7, 1, 1, 0), 200)]
+
+
+@pytest.mark.parametrize("cut", [1, 5, 12, 30])
+def test_a_log_cut_short_is_whole_up_to_there(log: Path, cut: int) -> None:
+    log.write_bytes(log.read_bytes()[:-cut])
+
+    assert [frame.message for _, frame in read_tlog(log)] == [Tick(7, 0)]
+
+
+def test_what_is_no_log_is_refused(tmp_path: Path) -> None:
+    other = tmp_path / "other.tlog"
+    other.write_bytes(b"this is some text, not a log")
+
+    with pytest.raises(TlogError, match="byte 8"):
+        list(read_tlog(other))
+
+
+def test_mavlogdump_reads_it(log: Path) -> None:
+    program = DUMP.format(log=str(log))
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        env=os.environ | {"MAVLINK20": "1"},
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=30,
+    )
+
+    assert "LAGLAB_TICK {tick : 7, measurements : 0}" in done.stdout
+    assert "LAGLAB_COMMAND {v : 0.25, omega : -1.5, tick : 7" in done.stdout
