@@ -7,11 +7,14 @@ from laglab_protocol.errors import (
     EndpointError,
     FarEndGoneError,
     FarEndStalledError,
+    KeyFileError,
     NoSuchPortError,
     PortBusyError,
     ProtocolError,
+    UnsignedLinkError,
 )
 from laglab_protocol.frame import Frame, Refusal
+from laglab_protocol.keys import Codec, make_key, read_key, refuse_open_door
 from laglab_protocol.messages import (
     NO_COMMAND,
     ROBOT_COMPONENT,
@@ -39,6 +42,7 @@ __all__ = [
     "STATION_COMPONENT",
     "STATION_SYSTEM",
     "BadUrlError",
+    "Codec",
     "Command",
     "Counters",
     "DialectError",
@@ -51,6 +55,7 @@ __all__ = [
     "FarEndStalledError",
     "Frame",
     "Heartbeat",
+    "KeyFileError",
     "Measurement",
     "Message",
     "NoSuchPortError",
@@ -61,8 +66,12 @@ __all__ = [
     "Sender",
     "Tick",
     "TlogError",
+    "UnsignedLinkError",
+    "make_key",
     "message_type",
     "open_endpoint",
+    "read_key",
     "read_tlog",
+    "refuse_open_door",
     "tlog_record",
 ]

@@ -55,8 +55,10 @@ class Refusal(Enum):
     """A signature is required and there is none."""
     BAD_SIGNATURE = auto()
     """Not signed with our key."""
+    NO_KEY = auto()
+    """Signed, and we have no key to tell by whom."""
     REPLAYED = auto()
-    """Signed with our key, but no later than what this stream has already said."""
+    """Signed with our key, but no later than what this stream has said, or a minute old."""
 
 
 def encode(message: Message, system: int, component: int, sequence: int, flags: int = 0) -> bytes:
@@ -73,8 +75,10 @@ def encode(message: Message, system: int, component: int, sequence: int, flags: 
     return header + payload + crc.to_bytes(2, "little")
 
 
-def decode(buffer: bytes, start: int) -> Frame | Refusal:
+def decode(buffer: bytes, start: int, signed_too: bool = True) -> Frame | Refusal:
     """The frame whose start byte is at `start`, its CRC verified, its signature not.
+
+    Unless `signed_too`, a signed one is refused: who has no key cannot tell whose it is.
 
     Payloads shorter than the message are filled with zeros, longer ones (from a later version of
     the dialect) cut: both as MAVLink 2 demands.
@@ -87,8 +91,8 @@ def decode(buffer: bytes, start: int) -> Frame | Refusal:
     layout = LAYOUT_OF_ID.get(number & 0xFFFFFF)
     if layout is None:
         return Refusal.UNKNOWN
-    if flags & ~SIGNED:
-        return Refusal.INCOMPATIBLE
+    if flags and not (flags == SIGNED and signed_too):
+        return Refusal.NO_KEY if flags == SIGNED else Refusal.INCOMPATIBLE
     end = body + length
     stop = end + (CRC_SIZE + SIGNATURE_SIZE if flags else CRC_SIZE)
     if size < stop:
