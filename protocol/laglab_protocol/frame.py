@@ -10,7 +10,7 @@ definition has of its own (https://mavlink.io/en/guide/serialization.html).
 
 import struct
 from enum import Enum, auto
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, final
 
 from fastcrc import crc16
 
@@ -26,10 +26,16 @@ SIGNED = 0x01
 
 _new_tuple: Any = tuple.__new__
 _crc = crc16.mcrf4xx
-_pack_header = struct.Struct("<BBBBBBB3s").pack
+_SHORTEST_BODY = 9
+"""From the third byte of a frame to the end of a payload of one byte."""
+_OPENINGS = {
+    length + 8: (bytes([START, length]), _crc(bytes([length]))) for length in range(1, 256)
+}
+"""By the length of that body: the first two bytes of the frame, and the CRC of the second."""
 _unpack_header = struct.Struct("<xBBxBBBI").unpack_from  # one byte beyond the id: masked off
 
 
+@final
 class Frame(NamedTuple):
     """A message as it travelled. `raw` is the whole frame, its signature included."""
 
@@ -67,12 +73,11 @@ def encode(message: Message, system: int, component: int, sequence: int, flags: 
     Raises DialectError for a class that is no message, struct.error for a value out of range.
     """
     layout = LAYOUT_OF_TYPE.get(type(message)) or layout_of(message)
-    payload = layout.pack(*message).rstrip(b"\0") or b"\0"
-    header = _pack_header(
-        START, len(payload), flags, 0, sequence, system, component, layout.id_bytes
-    )
-    crc = _crc(header[1:] + payload + layout.crc_extra)
-    return header + payload + crc.to_bytes(2, "little")
+    body = layout.pack(flags, 0, sequence, system, component, layout.id_bytes, *message)
+    body = body.rstrip(b"\0").ljust(_SHORTEST_BODY, b"\0")
+    opening, crc_of_length = _OPENINGS[len(body)]
+    crc = _crc(layout.crc_extra, _crc(body, crc_of_length))
+    return opening + body + crc.to_bytes(2, "little")
 
 
 def decode(buffer: bytes, start: int, signed_too: bool = True) -> Frame | Refusal:
@@ -99,10 +104,11 @@ def decode(buffer: bytes, start: int, signed_too: bool = True) -> Frame | Refusa
         return Refusal.INCOMPLETE
     if _crc(buffer[start + 1 : end] + layout.crc_extra) != buffer[end] | buffer[end + 1] << 8:
         return Refusal.BAD_CRC
-    payload = buffer[body:end]
-    if length != layout.size:
-        payload = payload.ljust(layout.size, b"\0")[: layout.size]
+    if length >= layout.size:
+        fields = layout.unpack(buffer, body)
+    else:
+        fields = layout.unpack(buffer[body:end].ljust(layout.size, b"\0"), 0)
     # What NamedTuple._make does, without its check of the count: the struct has fixed it.
-    message = _new_tuple(layout.type, layout.unpack(payload))
+    message = _new_tuple(layout.type, fields)
     frame: Frame = _new_tuple(Frame, (message, system, component, sequence, buffer[start:stop]))
     return frame

@@ -64,13 +64,13 @@ class StoredTimestamps(Timestamps):
             ) from error
         self._written = dict(self.last)
 
-    def advance(self, stream: Stream, timestamp: int) -> None:
-        super().advance(stream, timestamp)
-        if timestamp > self._written.get(stream, 0):
-            self._written[stream] = timestamp + AHEAD
-            self._write()
+    def reserve(self, stream: Stream, timestamp: int) -> int:
+        self._written[stream] = timestamp + AHEAD
+        self._write()
+        return timestamp + AHEAD
 
     def close(self) -> None:
+        """From here on the file is exact."""
         self._written = dict(self.last)
         self._write()
 

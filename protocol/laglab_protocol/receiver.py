@@ -67,13 +67,14 @@ class Receiver:
         buffer = self._rest + data if self._rest else data
         self._rest = b""
         verifier, expected = self._verifier, self._expected
+        signed_too = verifier is not None
         frames: list[Frame] = []
         position, size = 0, len(buffer)
         while position < size:
-            found = decode(buffer, position, bool(verifier)) if buffer[position] == START else None
-            if verifier and isinstance(found, Frame):
+            found = decode(buffer, position, signed_too) if buffer[position] == START else None
+            if verifier and type(found) is Frame:
                 found = verifier.refuses(found) or found
-            if isinstance(found, Frame):
+            if type(found) is Frame:
                 _, system, component, sequence, raw = found
                 peer = system << 8 | component
                 if expected.get(peer) == sequence:

@@ -1,5 +1,6 @@
 """Only the key's holders are heard, each frame once; what is refused changes nothing."""
 
+import itertools
 import stat
 from pathlib import Path
 from typing import Any
@@ -26,7 +27,7 @@ from laglab_protocol import (
 from laglab_protocol.frame import SIGNED, encode
 from laglab_protocol.generated import laglab as dialect
 from laglab_protocol.keys import AHEAD, StoredTimestamps
-from laglab_protocol.signing import MINUTE, Signer, Timestamps, Verifier
+from laglab_protocol.signing import CLOCK_EVERY, MINUTE, Signer, Timestamps, Verifier
 
 KEY = bytes(range(32))
 OTHER_KEY = bytes(32)
@@ -173,12 +174,25 @@ def test_a_new_stream_may_be_a_minute_behind(behind: int, heard: bool) -> None:
     assert Listening().hears(signed(NOW - behind)) is heard
 
 
-def test_timestamps_grow_even_when_the_clock_goes_back() -> None:
-    times = iter([NOW, NOW, NOW - 10**6, NOW + 5])
-    sender = Sender(200, 190, Signer(KEY, STREAM, clock=lambda: next(times)))
-    stamps = [int.from_bytes(sender.frame(COMMAND)[-12:-6], "little") for _ in range(4)]
+def stamp_of(raw: bytes) -> int:
+    return int.from_bytes(raw[-12:-6], "little")
 
-    assert stamps == [NOW, NOW + 1, NOW + 2, NOW + 5]
+
+def test_timestamps_grow_even_when_the_clock_goes_back() -> None:
+    times = itertools.cycle([NOW, NOW - 10**6, NOW + 5])
+    sender = Sender(200, 190, Signer(KEY, STREAM, clock=lambda: next(times)))
+    stamps = [stamp_of(sender.frame(COMMAND)) for _ in range(100)]
+
+    assert stamps[0] == NOW
+    assert all(later > earlier for earlier, later in itertools.pairwise(stamps))
+
+
+def test_timestamps_follow_the_clock() -> None:
+    times = itertools.count(NOW, 1000)
+    sender = Sender(200, 190, Signer(KEY, STREAM, clock=lambda: next(times)))
+    stamps = [stamp_of(sender.frame(COMMAND)) for _ in range(10 * CLOCK_EVERY + 1)]
+
+    assert stamps[-1] >= NOW + 10 * 1000
 
 
 # On disk
@@ -263,14 +277,15 @@ def test_our_own_timestamps_go_on_after_a_restart(tmp_path: Path) -> None:
 
 def test_the_file_is_not_written_for_every_frame(tmp_path: Path) -> None:
     path = tmp_path / "timestamps"
-    timestamps = StoredTimestamps(path)
-    timestamps.advance(STREAM, NOW)
-    written = path.stat().st_ino
-    timestamps.advance(STREAM, NOW + 1)
-    assert path.stat().st_ino == written
+    times = itertools.chain([NOW, NOW + 1], itertools.repeat(NOW + AHEAD + 1))
+    sender = Sender(200, 190, Signer(KEY, STREAM, StoredTimestamps(path), lambda: next(times)))
+    sender.frame(COMMAND)
+    path.unlink()
+    sender.frame(COMMAND)
+    assert not path.exists()
 
-    timestamps.advance(STREAM, NOW + AHEAD + 1)
-    assert StoredTimestamps(path).last[STREAM] > NOW + AHEAD
+    said = [sender.frame(COMMAND) for _ in range(3 * CLOCK_EVERY)]
+    assert StoredTimestamps(path).last[STREAM] >= stamp_of(said[-1]) > NOW + AHEAD
 
 
 @pytest.mark.parametrize("text", ["[1]", "{", '{"a": 1}', '{"0/1/1": "x"}'])
