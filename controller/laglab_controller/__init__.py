@@ -1,0 +1,46 @@
+"""The remote station: estimators, control law, and its answer to every tick of the robot."""
+
+from laglab_controller.angle import wrap
+from laglab_controller.controller import Control, Controller, StationConfig
+from laglab_controller.delayed import DelayedEkf
+from laglab_controller.ekf import Ekf
+from laglab_controller.errors import ConfigError, RobotSilentError, StationError
+from laglab_controller.estimator import Applied, Estimator, Measured, State
+from laglab_controller.family import ESTIMATORS
+from laglab_controller.law import Drive, Law
+from laglab_controller.loop import run_station
+from laglab_controller.model import Model, RobotModel
+from laglab_controller.popf import Popf
+from laglab_controller.replay import Replay, constant_delay, replay
+from laglab_controller.rigid import RigidMotions
+from laglab_controller.station import Station
+from laglab_controller.windows import ReplayedInputs
+
+__all__ = [
+    "ESTIMATORS",
+    "Applied",
+    "ConfigError",
+    "Control",
+    "Controller",
+    "DelayedEkf",
+    "Drive",
+    "Ekf",
+    "Estimator",
+    "Law",
+    "Measured",
+    "Model",
+    "Popf",
+    "Replay",
+    "ReplayedInputs",
+    "RigidMotions",
+    "RobotModel",
+    "RobotSilentError",
+    "State",
+    "Station",
+    "StationConfig",
+    "StationError",
+    "constant_delay",
+    "replay",
+    "run_station",
+    "wrap",
+]

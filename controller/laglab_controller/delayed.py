@@ -1,0 +1,160 @@
+"""`delayed-ekf`: an EKF that lives where the measurements belong, carried on to the present."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Generic, NamedTuple, TypeVar
+
+from laglab_controller import kalman
+from laglab_controller.estimator import Applied, Measured
+from laglab_controller.kalman import Belief
+from laglab_controller.log import Log, append
+from laglab_controller.model import Matrix, Model, Vector
+from laglab_controller.sliding import SlidingProduct
+from laglab_controller.windows import Windows
+
+W = TypeVar("W")
+
+
+class Filtered(NamedTuple):
+    """One tick of the EKF: the input that led there, prior, what was measured, posterior."""
+
+    tick: int
+    u: Vector | None
+    prior: Belief
+    z: Vector | None
+    posterior: Belief
+
+
+@dataclass(frozen=True, eq=False)
+class DelayedState(Generic[W]):
+    """The EKF up to the newest measurement's tick, and the inputs from there to `tick`."""
+
+    tick: int
+    filtered: Log[Filtered]
+    window: SlidingProduct[Vector, W]
+    windows: Windows[W]
+
+    @property
+    def x(self) -> Vector:
+        """The estimate (d,) at `tick`."""
+        return self._carried.x
+
+    @property
+    def P(self) -> Matrix:
+        """Its covariance (d, d)."""
+        return self._carried.P
+
+    @cached_property
+    def _carried(self) -> Belief:
+        return self.windows.carry(self.filtered.newest.posterior, self.window.product)
+
+
+@dataclass(frozen=True)
+class DelayedEkf(Generic[W]):
+    """The optimum (to first order) for measurements that come late, in any order, or never.
+
+    Every z_s corrects the EKF at tick s, and what followed is replayed; so the answer is that of
+    an EKF that had everything in order. Measurements and corrections of inputs more than `memory`
+    ticks older than the newest measurement are not used.
+    """
+
+    model: Model
+    windows: Windows[W]
+    memory: int = 1024
+
+    def start(self, x: Vector, P: Matrix) -> DelayedState[W]:
+        """The prior of tick 0."""
+        prior = Belief(x, P)
+        first = Filtered(0, None, prior, None, prior)
+        window: SlidingProduct[Vector, W] = SlidingProduct(
+            self.windows.compose, self.windows.identity
+        )
+        return DelayedState(0, Log(first, None, 1), window, self.windows)
+
+    def predict(self, state: DelayedState[W], u: Vector) -> DelayedState[W]:
+        """One more input in the window; unmeasured, the EKF follows `memory` ticks behind."""
+        window = state.window.push(u, self.windows.over(u))
+        predicted = replace(state, tick=state.tick + 1, window=window)
+        return self._advance(predicted, predicted.tick - self.memory, z=None)
+
+    def correct(
+        self,
+        state: DelayedState[W],
+        measurements: Sequence[Measured],
+        inputs: Sequence[Applied] = (),
+    ) -> DelayedState[W]:
+        """Roll back to the oldest news, replay from there, then go on to the newest measurement."""
+        oldest, newest = _span(state.filtered)
+        late = {s: z for s, z in reversed(measurements) if oldest <= s <= newest}
+        known = {j + 1: u for j, u in inputs if oldest < j + 1}
+        if late or known:
+            state = self._revise(state, late, known)
+        for s, z in sorted(measurements, key=lambda measured: measured.tick):
+            state = self._advance(state, s, z)
+        return state
+
+    def _advance(self, state: DelayedState[W], s: int, z: Vector | None) -> DelayedState[W]:
+        """Bring the EKF up to tick s > its own, and correct it there."""
+        filtered, window = state.filtered, state.window
+        while filtered.newest.tick < s:
+            u, window = window.pop()
+            filtered = self._extend(filtered, u, z if filtered.newest.tick + 1 == s else None)
+        return replace(state, filtered=filtered, window=window)
+
+    def _extend(self, filtered: Log[Filtered], u: Vector, z: Vector | None) -> Log[Filtered]:
+        tick, *_, posterior = filtered.newest
+        prior, _ = kalman.predict(self.model, posterior, u)
+        return append(filtered, self._corrected(tick + 1, u, prior, z), self.memory)
+
+    def _corrected(self, tick: int, u: Vector | None, prior: Belief, z: Vector | None) -> Filtered:
+        posterior = prior if z is None else kalman.correct(self.model, prior, z)
+        return Filtered(tick, u, prior, z, posterior)
+
+    def _revise(
+        self, state: DelayedState[W], late: Mapping[int, Vector], known: Mapping[int, Vector]
+    ) -> DelayedState[W]:
+        """With measurements and inputs (by the tick they led to) that came after the EKF passed."""
+        older, undone = _rolled_back(state.filtered, since=min({*late, *known}))
+        filtered = older
+        for past in reversed(undone):
+            z = late.get(past.tick) if past.z is None else past.z
+            u = known.get(past.tick, past.u)
+            if filtered is None or u is None:
+                filtered = Log(self._corrected(past.tick, u, past.prior, z), older, 1)
+            else:
+                filtered = self._extend(filtered, u, z)
+        window = self._with_inputs(state.window, known, newest=state.filtered.newest.tick)
+        return replace(state, filtered=filtered or state.filtered, window=window)
+
+    def _with_inputs(
+        self, window: SlidingProduct[Vector, W], known: Mapping[int, Vector], newest: int
+    ) -> SlidingProduct[Vector, W]:
+        """The window after tick `newest`, with those of its inputs that were wrong put right."""
+        if not known or max(known) <= newest:
+            return window
+        right: SlidingProduct[Vector, W] = SlidingProduct(
+            self.windows.compose, self.windows.identity
+        )
+        for tick, (u, _) in enumerate(window, start=newest + 1):
+            u = known.get(tick, u)
+            right = right.push(u, self.windows.over(u))
+        return right
+
+
+def _span(filtered: Log[Filtered]) -> tuple[int, int]:
+    """The oldest and newest tick that can still be gone back to."""
+    newest = filtered.newest.tick
+    return newest - filtered.length + 1, newest
+
+
+def _rolled_back(
+    filtered: Log[Filtered], since: int
+) -> tuple[Log[Filtered] | None, list[Filtered]]:
+    """What was before `since`, and what was from there on, newest first."""
+    log: Log[Filtered] | None = filtered
+    undone: list[Filtered] = []
+    while log is not None and log.newest.tick >= since:
+        undone.append(log.newest)
+        log = log.older
+    return log, undone

@@ -1,0 +1,44 @@
+"""The estimators by name, for the robot."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+from laglab_controller.delayed import DelayedEkf
+from laglab_controller.ekf import Ekf
+from laglab_controller.errors import ConfigError
+from laglab_controller.estimator import Estimator
+from laglab_controller.model import RobotModel
+from laglab_controller.popf import Popf
+from laglab_controller.raw import Raw
+from laglab_controller.rigid import RigidMotions
+
+
+class Kind(NamedTuple):
+    """What an estimator is, and how to make it for a robot."""
+
+    description: str
+    make: Callable[[RobotModel], Estimator[Any]]
+    predicts: bool = True
+    """Whether it gives an estimate of the present, which can be extrapolated and reported."""
+
+
+ESTIMATORS: Mapping[str, Kind] = {
+    "raw": Kind("no filter and no prediction: the newest measurement", lambda _: Raw(), False),
+    "ekf": Kind("the plain EKF, which takes a late measurement for a fresh one", Ekf),
+    "popf": Kind("the paper's filter", Popf),
+    "popf-printed": Kind(
+        "the paper's filter with the innovation as (28) prints it",
+        lambda model: Popf(model, innovation_at_k=True),
+    ),
+    "delayed-ekf": Kind(
+        "the optimum: an EKF at the measurement's tick, carried forward over the known inputs",
+        lambda model: DelayedEkf(model, RigidMotions(model)),
+    ),
+}
+
+
+def estimator_kind(name: str) -> Kind:
+    """The estimator of that name. Raises ConfigError, listing the names, when there is none."""
+    if name not in ESTIMATORS:
+        raise ConfigError(f"no estimator {name!r}: take one of {', '.join(ESTIMATORS)}")
+    return ESTIMATORS[name]

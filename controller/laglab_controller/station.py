@@ -1,0 +1,156 @@
+"""The station's side of the link without I/O: the robot's bytes in, the answer's bytes out."""
+
+import numpy as np
+
+from laglab_controller.controller import Control, Controller, StationConfig, diverged
+from laglab_controller.estimator import Measured, State
+from laglab_protocol import (
+    STATION_COMPONENT,
+    STATION_SYSTEM,
+    Command,
+    End,
+    EndReason,
+    Estimate,
+    Frame,
+    Heartbeat,
+    Measurement,
+    Message,
+    Receiver,
+    Sender,
+    Tick,
+)
+
+MAV_TYPE_GCS, MAV_AUTOPILOT_INVALID, MAV_STATE_ACTIVE, MAVLINK_VERSION = 6, 8, 4, 3
+
+
+class Station:
+    """Answers each tick of the robot once with ESTIMATE (unless `raw`) and COMMAND.
+
+    A repeated tick gets the same answer and changes nothing. A tick whose measurements did not all
+    arrive gets none: the robot will repeat it. Everything else that arrives is passed over, and so
+    is every other sender once a robot was heard. The first tick heard is tick 0 of section 3.
+    """
+
+    def __init__(self, config: StationConfig) -> None:
+        self._controller = Controller(config)
+        self._sender = Sender(STATION_SYSTEM, STATION_COMPONENT)
+        self._receiver = Receiver()
+        self._robot: tuple[int, int] | None = None
+        self._measurements: list[Measurement] = []
+        self._first = 0
+        self._control = self._controller.start()
+        self._answer: list[Message] = []
+        self._tick: int | None = None
+        self._outcome: End | None = None
+        self._closed = False
+
+    @property
+    def outcome(self) -> End | None:
+        """What ended the run: None while it lasts."""
+        return self._outcome
+
+    @property
+    def closed(self) -> bool:
+        """Whether both sides have said END."""
+        return self._closed
+
+    @property
+    def tick(self) -> int | None:
+        """The last tick that was answered; None before the first."""
+        return self._tick
+
+    def heartbeat(self) -> bytes:
+        """The frame that makes the station known to the robot."""
+        return self._sender.frame(
+            Heartbeat(
+                custom_mode=0,
+                type=MAV_TYPE_GCS,
+                autopilot=MAV_AUTOPILOT_INVALID,
+                base_mode=0,
+                system_status=MAV_STATE_ACTIVE,
+                mavlink_version=MAVLINK_VERSION,
+            )
+        )
+
+    def receive(self, data: bytes, datagram: bool) -> bytes:
+        """What to send back for `data`, perhaps nothing; `datagram` says that it is a whole one."""
+        frames = self._receiver.receive(data)
+        if datagram:
+            frames += self._receiver.end_datagram()
+        return b"".join(self._hear(frame) for frame in frames)
+
+    def end(self, reason: EndReason) -> bytes:
+        """End the run from this side: the frame to send."""
+        self._outcome = End(self._tick or 0, reason)
+        return self._sender.frame(self._outcome)
+
+    def _hear(self, frame: Frame) -> bytes:
+        sender = (frame.system, frame.component)
+        if self._robot not in (None, sender):
+            return b""
+        match frame.message:
+            case Measurement():
+                self._measurements.append(frame.message)
+            case Tick():
+                self._robot = sender
+                return self._hear_tick(frame.message)
+            case End() if self._robot:
+                return self._hear_end(frame.message)
+        return b""
+
+    def _hear_end(self, end: End) -> bytes:
+        """Answered once with the same; it may itself be the answer to ours."""
+        answered, self._closed = self._outcome is not None, True
+        if answered:
+            return b""
+        self._outcome = end
+        return self._sender.frame(end)
+
+    def _hear_tick(self, message: Tick) -> bytes:
+        measurements, self._measurements = self._measurements, []
+        if len(measurements) != message.measurements:
+            return b""
+        if self._tick is None:
+            self._first = message.tick
+        if message.tick == self._tick:
+            return self._framed()
+        if self._outcome is None and (self._tick is None or message.tick > self._tick):
+            self._step(message.tick, measurements)
+            return self._framed()
+        return b""
+
+    def _framed(self) -> bytes:
+        return b"".join(self._sender.frame(message) for message in self._answer)
+
+    def _step(self, tick: int, measurements: list[Measurement]) -> None:
+        """On to `tick`; over ticks that were lost on the way the robot held the last command."""
+        control = self._control
+        for _ in range(0 if self._tick is None else tick - self._tick):
+            control = self._controller.advance(control)
+        arrived = [
+            Measured(message.tick - self._first, np.array(message[:3]))
+            for message in measurements
+            if self._first <= message.tick <= tick
+        ]
+        self._control = self._controller.answer(control, arrived)
+        self._tick = tick
+        self._answer = self._messages(tick, self._control)
+
+    def _messages(self, tick: int, control: Control) -> list[Message]:
+        assert self._robot is not None
+        estimates = _estimate(tick, control.estimate)
+        v, omega, _ = control.drive
+        command = Command(v, omega, tick, *self._robot, estimates=len(estimates))
+        if control.estimate.x is not None and diverged(control.estimate.x):
+            self._outcome = End(tick, EndReason.DIVERGED)
+            return [*estimates, self._outcome, command]  # the command closes the answer
+        return [*estimates, command]
+
+
+def _estimate(tick: int, state: State) -> list[Estimate]:
+    """The report of the estimate; none when the estimator claims no covariance."""
+    if state.x is None or state.P is None:
+        return []
+    (xx, xy, xt), (_, yy, yt), (_, _, tt) = state.P.tolist()
+    x, y, theta = state.x.tolist()
+    return [Estimate(x, y, theta, xx, xy, xt, yy, yt, tt, tick)]

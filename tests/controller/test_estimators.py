@@ -1,0 +1,180 @@
+"""What each estimator's definition says, checked against the definition written out plainly."""
+
+import numpy as np
+import pytest
+
+from laglab_controller import (
+    ESTIMATORS,
+    Applied,
+    DelayedEkf,
+    Ekf,
+    Law,
+    Measured,
+    Popf,
+    ReplayedInputs,
+    RigidMotions,
+    RobotModel,
+    constant_delay,
+    replay,
+)
+
+robot = RobotModel()
+P0 = np.eye(3) * 1e-3
+
+
+@pytest.fixture
+def record(simulate):
+    """A noisy drive of 300 ticks to replay."""
+    return simulate("delayed-ekf", noise=5, ticks=300, p0=1e-3, law=Law(v_max=2, omega_max=3))
+
+
+def run(estimator, record, m):
+    return replay(
+        estimator,
+        record.poses[0],
+        P0,
+        record.inputs,
+        constant_delay(record.measurements, m),
+    )
+
+
+def textbook_predict(x, P, u):
+    A, W = robot.A(x, u), robot.W(x)
+    return robot.f(x, u), A @ P @ A.T + W @ robot.Q @ W.T
+
+
+def textbook_correct(x, P, z):
+    K = P @ np.linalg.inv(P + robot.R)
+    return x + K @ robot.innovation(z, x), (np.eye(3) - K) @ P
+
+
+def literal_popf(record, m):
+    """(27), (28) with the product of (21) taken anew at every tick."""
+    x, P = record.poses[0], P0
+    priors, factors, estimates, covariances = [], [], [], []
+    for k, _ in enumerate(record.poses):
+        if k:
+            factors[k - 1] = robot.A(x, record.inputs[k - 1]) @ factors[k - 1]
+            x, P = textbook_predict(x, P, record.inputs[k - 1])
+        priors.append((x, P))
+        K = np.zeros((3, 3))
+        if k >= m:
+            (x_s, P_s), M = priors[k - m], np.eye(3)
+            for i in range(1, m + 1):
+                M = M @ factors[k - i]
+            K = M @ P_s @ np.linalg.inv(P_s + robot.R)
+            x = x + K @ robot.innovation(record.measurements[k - m], x_s)
+            P = P - K @ P_s @ M.T
+            P = (P + P.T) / 2
+        factors.append(np.eye(3) - K)
+        estimates.append(x)
+        covariances.append(P)
+    return np.array(estimates), np.array(covariances)
+
+
+def literal_delayed_ekf(record, m):
+    """At every tick, the EKF over everything that has arrived, from tick 0 on."""
+    estimates, covariances = [], []
+    for k, _ in enumerate(record.poses):
+        x, P = record.poses[0], P0
+        for j in range(k + 1):
+            if j:
+                x, P = textbook_predict(x, P, record.inputs[j - 1])
+            if j + m <= k:
+                x, P = textbook_correct(x, P, record.measurements[j])
+        estimates.append(x)
+        covariances.append(P)
+    return np.array(estimates), np.array(covariances)
+
+
+@pytest.mark.parametrize("m", [0, 1, 7, 20])
+def test_popf_is_its_equations_written_out(record, m):
+    estimates, covariances = literal_popf(record, m)
+    answer = run(Popf(robot), record, m)
+    assert np.abs(answer.estimates - estimates).max() < 1e-12
+    assert np.abs(answer.covariances - covariances).max() < 1e-12
+
+
+@pytest.mark.parametrize("m", [0, 1, 20])
+@pytest.mark.parametrize("windows", [RigidMotions(robot), ReplayedInputs(robot)])
+def test_delayed_ekf_is_roll_back_and_replay(record, m, windows):
+    estimates, covariances = literal_delayed_ekf(record, m)
+    answer = run(DelayedEkf(robot, windows), record, m)
+    assert np.abs(answer.estimates - estimates).max() < 1e-12
+    assert np.abs(answer.covariances - covariances).max() < 1e-12
+
+
+@pytest.mark.parametrize("name", ["popf", "popf-printed", "delayed-ekf"])
+def test_without_delay_it_is_the_ekf(record, name):
+    ekf, other = run(Ekf(robot), record, 0), run(ESTIMATORS[name].make(robot), record, 0)
+    assert np.abs(ekf.estimates - other.estimates).max() < 1e-12
+    assert np.abs(ekf.covariances - other.covariances).max() < 1e-12
+
+
+def test_ekf_takes_a_late_measurement_for_a_fresh_one(record):
+    late = run(Ekf(robot), record, 5).estimates
+    x, P = record.poses[0], P0
+    for k, u in enumerate(record.inputs, start=1):
+        x, P = textbook_predict(x, P, u)
+        if k >= 5:
+            x, P = textbook_correct(x, P, record.measurements[k - 5])
+        assert np.abs(late[k] - x).max() < 1e-10 or k < 5
+
+
+@pytest.mark.parametrize("name", ["popf", "popf-printed", "ekf"])
+def test_before_the_first_measurement_it_only_predicts(record, name):
+    answer = run(ESTIMATORS[name].make(robot), record, 20)
+    x, P = record.poses[0], P0
+    for k in range(1, 20):
+        x, P = textbook_predict(x, P, record.inputs[k - 1])
+        assert np.allclose(answer.estimates[k], x, atol=1e-14)
+        assert np.allclose(answer.covariances[k], P, atol=1e-16)
+
+
+@pytest.mark.parametrize("name", ["popf", "delayed-ekf"])
+@pytest.mark.parametrize("m", [0, 3, 20])
+def test_without_noise_the_estimate_is_exact_at_every_tick(simulate, name, m):
+    record = simulate(name, m=m, ticks=500)
+    assert np.abs(record.estimates - record.poses).max() < 1e-11
+
+
+@pytest.mark.parametrize("name", list(ESTIMATORS))
+def test_a_repeated_measurement_changes_nothing(record, name):
+    once = constant_delay(record.measurements, 3)
+    again = [[*new, *old] for new, old in zip(once, [[], *once], strict=False)]
+    estimator, start = ESTIMATORS[name].make(robot), (record.poses[0], P0, record.inputs)
+    np.testing.assert_array_equal(
+        replay(estimator, *start, once).estimates, replay(estimator, *start, again).estimates
+    )
+
+
+def test_delayed_ekf_does_not_mind_the_order(record):
+    """Everything that was measured, each with its own delay, some together: all are used."""
+    random = np.random.default_rng(3)
+    arrivals = [[] for _ in record.poses]
+    for s, z in enumerate(record.measurements):
+        arrivals[min(s + random.integers(0, 60), 300)].append(Measured(s, z))
+    ordered = replay(
+        Ekf(robot), record.poses[0], P0, record.inputs, constant_delay(record.measurements, 0)
+    )
+    for windows in (RigidMotions(robot), ReplayedInputs(robot)):
+        answer = replay(DelayedEkf(robot, windows), record.poses[0], P0, record.inputs, arrivals)
+        assert np.abs(answer.estimates[-1] - ordered.estimates[-1]).max() < 1e-12
+        assert np.abs(answer.covariances[-1] - ordered.covariances[-1]).max() < 1e-12
+
+
+@pytest.mark.parametrize("wrong", [3, 200, 299])
+def test_delayed_ekf_puts_a_wrong_input_right(record, wrong):
+    """Told at the last tick what was really in force at another, it is as if it had known."""
+    estimator = DelayedEkf(robot, RigidMotions(robot))
+    believed = record.inputs.copy()
+    believed[wrong] = [0.7, -2.0]
+    arrivals = constant_delay(record.measurements, 20)
+    state = estimator.start(record.poses[0], P0)
+    for k, measurements in enumerate(arrivals):
+        state = estimator.predict(state, believed[k - 1]) if k else state
+        told = [Applied(wrong, record.inputs[wrong])] if k == 300 else []
+        state = estimator.correct(state, measurements, told)
+    right = run(estimator, record, 20)
+    assert np.abs(state.x - right.estimates[-1]).max() < 1e-12
+    assert np.abs(state.P - right.covariances[-1]).max() < 1e-12

@@ -1,0 +1,48 @@
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from laglab_controller import RobotModel
+
+coordinate = st.floats(-100, 100)
+poses = st.tuples(coordinate, coordinate, coordinate).map(np.array)
+inputs = st.tuples(st.floats(-20, 20), st.floats(-20, 20)).map(np.array)
+robot = RobotModel()
+
+
+def slope(function, at):
+    """Central differences of a function at a vector, one column per component."""
+    step = 1e-6
+    columns = [(function(at + d) - function(at - d)) / (2 * step) for d in step * np.eye(len(at))]
+    return np.stack(columns, axis=1)
+
+
+@given(poses, inputs)
+def test_A_is_the_slope_of_f_in_the_state(x, u):
+    assert np.allclose(robot.A(x, u), slope(lambda x: robot.f(x, u), x), atol=1e-6)
+
+
+@given(poses)
+def test_W_is_the_slope_of_f_in_the_wheel_speeds(x):
+    def driven_by(wheels):
+        left, right = wheels
+        r, L = robot.wheel_radius, robot.track
+        return robot.f(x, np.array([r * (right + left) / 2, r * (right - left) / L]))
+
+    assert np.allclose(robot.W(x), slope(driven_by, np.array([3.0, -5.0])), atol=1e-6)
+
+
+@given(poses)
+def test_H_is_the_slope_of_h(x):
+    assert np.allclose(robot.H(x), slope(robot.h, x), atol=1e-6)
+
+
+@given(poses, st.integers(-1000, 1000))
+def test_whole_turns_are_no_innovation(x, turns):
+    turned = x + np.array([0, 0, turns * 2 * np.pi])
+    assert np.allclose(robot.innovation(turned, x), 0, atol=1e-11)
+
+
+def test_heading_innovation_of_half_a_turn_is_plus_pi():
+    assert robot.innovation(np.array([0, 0, -np.pi]), np.zeros(3))[2] == np.pi
+    assert robot.innovation(np.array([0, 0, np.pi]), np.zeros(3))[2] == np.pi

@@ -1,0 +1,192 @@
+"""The station core at the level of frames."""
+
+import numpy as np
+import pytest
+
+from laglab_controller import ConfigError, Law, RobotModel, Station, StationConfig
+from laglab_protocol import (
+    NO_COMMAND,
+    Command,
+    End,
+    EndReason,
+    Estimate,
+    Heartbeat,
+    Measurement,
+    Receiver,
+    Sender,
+    Tick,
+)
+
+START = (-3.0, -3.0, 0.5)
+
+
+def make(estimator="popf", n=0, **config):
+    return Station(
+        StationConfig(
+            estimator=estimator,
+            initial_estimate=START,
+            command_delay=n,
+            **config,
+        )
+    )
+
+
+class Robot:
+    """Makes the robot's datagrams and reads the station's answers."""
+
+    def __init__(self, station, system=1, component=1):
+        self.station = station
+        self._sender = Sender(system, component)
+        self._receiver = Receiver()
+
+    def datagram(self, tick, *poses, announced=None):
+        """One measurement per (s, pose), then the tick."""
+        messages = [Measurement(*pose, 0.0, 0.0, s, NO_COMMAND) for s, pose in poses]
+        count = len(poses) if announced is None else announced
+        return b"".join(map(self._sender.frame, [*messages, Tick(tick, count)]))
+
+    def say(self, data):
+        answer = self.station.receive(data, datagram=True)
+        return [frame.message for frame in self._receiver.receive(answer)]
+
+    def tick(self, tick, *poses):
+        return self.say(self.datagram(tick, *poses))
+
+    def end(self, tick, reason):
+        return self.say(self._sender.frame(End(tick, reason)))
+
+
+def test_a_tick_is_answered_with_estimate_and_command():
+    robot = Robot(make())
+    estimate, command = robot.tick(0)
+    assert estimate == Estimate(*START, 1e-4, 0, 0, 1e-4, 0, 1e-4, tick=0)
+    v, omega, _ = Law().drive(np.array(START), at_goal=False)
+    assert command == Command(v, omega, 0, 1, 1, estimates=1)
+
+
+def test_raw_sends_no_estimate_and_stands_still_until_the_first_measurement():
+    robot = Robot(make("raw"))
+    assert robot.tick(0) == [Command(0, 0, 0, 1, 1, estimates=0)]
+    pose = (-1.0, 2.0, 0.3)
+    (command,) = robot.tick(1, (0, pose))
+    assert command[:2] == Law().drive(np.array(pose), at_goal=False)[:2]
+
+
+def test_the_input_applied_is_the_command_sent_n_ticks_earlier():
+    n, robot, model = 2, Robot(make(n=2)), RobotModel()
+    sent, x = [], np.array(START)
+    for k in range(6):
+        if k:
+            x = model.f(x, np.array(sent[k - 1 - n]) if k - 1 - n >= 0 else np.zeros(2))
+        estimate, command = robot.tick(k)
+        sent.append(command[:2])
+        assert estimate[:3] == pytest.approx(x, abs=1e-15)
+
+
+@pytest.mark.parametrize("estimator", ["raw", "popf", "delayed-ekf"])
+def test_a_repeated_tick_gets_the_same_answer_and_changes_nothing(estimator):
+    once, twice = Robot(make(estimator)), Robot(make(estimator))
+    for k in range(5):
+        measured = (k, (-3.0, -3.0 + k, 0.5))
+        first = twice.tick(k, measured)
+        assert twice.tick(k, measured) == first
+        assert twice.tick(k, measured) == first == once.tick(k, measured)
+
+
+def test_a_tick_whose_measurements_did_not_all_arrive_is_not_answered():
+    robot, whole = Robot(make()), Robot(make())
+    measured = (0, (-3.1, -3.0, 0.5))
+    assert robot.say(robot.datagram(0, announced=1)) == []
+    assert robot.station.tick is None
+    assert robot.tick(0, measured) == whole.tick(0, measured)
+
+
+def test_garbage_and_other_senders_are_passed_over():
+    robot, other = Robot(make()), Robot(make())
+    stranger = Robot(robot.station, system=9)
+    assert robot.say(b"\xfd\x00garbage\xff" * 9) == []
+    assert robot.tick(0) == other.tick(0)
+    assert stranger.tick(7) == []
+    assert stranger.end(0, EndReason.FAILED) == []
+    assert robot.station.outcome is None
+    assert robot.tick(1) == other.tick(1)
+
+
+def test_ticks_of_the_past_and_measurements_of_the_future_are_passed_over():
+    robot, other = Robot(make()), Robot(make())
+    for k in range(3):
+        future = (k + 1, (9.0, 9.0, 9.0))
+        assert robot.tick(k, future) == other.tick(k)
+    assert robot.tick(1) == []
+
+
+def test_after_lost_ticks_it_goes_on_from_the_present_one():
+    """In the meantime the robot held the last command."""
+    robot, model = Robot(make()), RobotModel()
+    _, command = robot.tick(0)
+    estimate, _ = robot.tick(4)
+    x = np.array(START)
+    for _ in range(4):
+        x = model.f(x, np.array(command[:2]))
+    assert estimate[:3] == pytest.approx(x, abs=1e-15)
+
+
+def test_a_robot_that_already_counts_high_is_joined():
+    late, fresh = Robot(make(n=1)), Robot(make(n=1))
+    for k in range(4):
+        measured = (-3.0 + k / 100, -3.0, 0.5)
+        estimate, command = late.tick(k + 5000, (k + 5000, measured), (4999, (0.0, 0.0, 0.0)))
+        expected = fresh.tick(k, (k, measured))
+        assert (estimate[:9], command[:2]) == (expected[0][:9], expected[1][:2])
+
+
+@pytest.mark.parametrize("estimator", ["raw", "ekf", "delayed-ekf"])
+@pytest.mark.parametrize("bad", [(np.nan, 0.0, 0.0), (0.0, np.inf, 0.0), (0.0, 0.0, np.inf)])
+def test_an_estimate_that_is_not_finite_stops_the_robot_and_ends_the_run(estimator, bad):
+    robot = Robot(make(estimator, initial_covariance=np.eye(3)))
+    robot.tick(0)
+    *estimates, end, command = robot.tick(1, (1, bad))
+    assert command == Command(0, 0, 1, 1, 1, len(estimates))
+    assert len(estimates) == (estimator != "raw")
+    assert end == robot.station.outcome == End(1, EndReason.DIVERGED)
+    assert robot.tick(1)[-2:] == [end, command]
+    assert robot.tick(2) == []
+    assert not robot.station.closed
+    assert robot.end(1, EndReason.DIVERGED) == []
+    assert robot.station.closed
+
+
+@pytest.mark.parametrize(("x", "diverged"), [(999.0, False), (1001.0, True), (-1001.0, True)])
+def test_beyond_a_kilometre_is_diverged(x, diverged):
+    robot = Robot(make("raw"))
+    robot.tick(0, (0, (x, 0.0, 0.0)))
+    assert (robot.station.outcome is not None) is diverged
+
+
+def test_the_robots_end_is_answered_once_with_the_same():
+    robot = Robot(make())
+    robot.tick(0)
+    assert robot.end(8, EndReason.COMPLETED) == [End(8, EndReason.COMPLETED)]
+    assert robot.station.outcome == End(8, EndReason.COMPLETED)
+    assert robot.end(8, EndReason.COMPLETED) == []
+    assert robot.station.closed
+
+
+def test_heartbeat_says_ground_station():
+    (frame,) = Receiver().receive(make().heartbeat())
+    assert isinstance(frame.message, Heartbeat)
+    assert (frame.system, frame.component, frame.message.type) == (200, 190, 6)
+
+
+@pytest.mark.parametrize(
+    ("config", "said"),
+    [
+        ({"estimator": "best"}, "no estimator 'best': take one of raw, "),
+        ({"command_delay": -1}, "command_delay must be 0 ticks or more, not -1"),
+        ({"initial_estimate": (0, 0)}, r"initial_estimate must have shape \(3,\), not \(2,\)"),
+        ({"initial_covariance": 1.0}, r"initial_covariance must have shape \(3, 3\), not \(\)"),
+    ],
+)
+def test_a_bad_config_is_named(config, said):
+    with pytest.raises(ConfigError, match=said):
+        StationConfig(**config)
