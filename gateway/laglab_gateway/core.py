@@ -13,6 +13,7 @@ from laglab_fmu import Reading
 from laglab_gateway.delay import DelayLine
 from laglab_gateway.errors import CommandError
 from laglab_gateway.plant import Plant
+from laglab_gateway.services import RobotState, Services, standard_parameters
 from laglab_gateway.trace import TraceRow
 from laglab_protocol import (
     NO_COMMAND,
@@ -20,6 +21,7 @@ from laglab_protocol import (
     ROBOT_SYSTEM,
     STATION_COMPONENT,
     STATION_SYSTEM,
+    Codec,
     Command,
     End,
     EndReason,
@@ -28,8 +30,6 @@ from laglab_protocol import (
     Heartbeat,
     Measurement,
     Message,
-    Receiver,
-    Sender,
     Tick,
 )
 
@@ -59,21 +59,33 @@ def from_station(frame: Frame) -> bool:
 class Gateway:
     """A plant behind two delay lines, in lock-step with a remote station."""
 
-    def __init__(self, plant: Plant, config: GatewayConfig) -> None:
+    def __init__(
+        self,
+        plant: Plant,
+        config: GatewayConfig,
+        services: Services | None = None,
+        codec: Codec | None = None,
+    ) -> None:
         self.tick = 0
         self.connected = False
         self.outcome: Outcome | None = None
         self.station_end: End | None = None
         self._config = config
         self._plant = plant
-        self._sender = Sender(ROBOT_SYSTEM, ROBOT_COMPONENT)
-        self._receiver = Receiver()
+        delays = (config.command_delay, config.measurement_delay)
+        self.services = services or Services(standard_parameters(*delays))
+        codec = codec or Codec(ROBOT_SYSTEM, ROBOT_COMPONENT)
+        self._sender, self._receiver = codec.sender, codec.receiver
+        self._replies: list[Message] = []
         self._measurements: DelayLine[Measurement] = DelayLine(config.measurement_delay)
         self._commands: DelayLine[Command] = DelayLine(config.command_delay)
         self._in_force: Command | None = None
+        self._applied = (0.0, 0.0)
         self._begin_tick()
 
     def _begin_tick(self) -> None:
+        if pose := self.services.arming.take_reset():
+            self._plant.place(*pose)
         self._reading: Reading = self._plant.read()
         self._batch: list[Message] = []
         self._estimates: list[Estimate] = []
@@ -83,6 +95,14 @@ class Gateway:
     def time_us(self) -> int:
         """Simulation time of this tick [µs]."""
         return round(self.tick * self._config.sample_time * 1e6)
+
+    @property
+    def state(self) -> RobotState:
+        """The robot at this tick, for those who ask."""
+        reading = self._reading
+        return RobotState(
+            self.time_us, reading.x, reading.y, reading.theta, reading.v, reading.omega
+        )
 
     @property
     def answered(self) -> bool:
@@ -102,18 +122,20 @@ class Gateway:
 
     def _sample(self) -> Measurement:
         reading, force = self._reading, self._in_force
-        v, omega, command_tick = (
-            (force.v, force.omega, force.tick) if force else (0.0, 0.0, NO_COMMAND)
-        )
         return Measurement(
             reading.x_meas,
             reading.y_meas,
             reading.theta_meas,
-            v,
-            omega,
+            *self._applied,
             self.tick,
-            command_tick,
+            force.tick if force else NO_COMMAND,
         )
+
+    def _apply(self) -> tuple[float, float]:
+        """The speeds from now on: of the last command due, as far as the robot may follow it."""
+        force = self._in_force
+        self._applied = self.services.allow(force.v, force.omega) if force else (0.0, 0.0)
+        return self._applied
 
     def receive(self, data: bytes, whole: bool) -> list[Frame]:
         """Take bytes from the link; returns the frames in them. No frame goes on after ``whole``.
@@ -125,20 +147,31 @@ class Gateway:
         if whole:
             frames += self._receiver.end_datagram()
         for frame in frames:
-            if from_station(frame):
-                self._take(frame.message)
+            if not from_station(frame) or not self._take(frame.message):
+                self._replies += self.services.answer(frame, self.state)
         return frames
 
-    def _take(self, message: Message) -> None:
+    def take_replies(self) -> list[bytes]:
+        """The frames that answer requests since the last call: not of the loop, to be sent too."""
+        replies, self._replies = self._replies, []
+        return [self._sender.frame(message) for message in replies]
+
+    def _take(self, message: Message) -> bool:
+        """Take what belongs to the loop; False when it does not."""
         match message:
+            case Command() | Estimate() if message.tick != self.tick or self.answered:
+                pass  # of another tick, or said again
+            case Estimate():
+                self._estimates.append(message)
+            case Command():
+                self._take_command(message)
             case Heartbeat():
                 self.connected = True
-            case Estimate(tick=tick) if tick == self.tick and not self.answered:
-                self._estimates.append(message)
-            case Command(tick=tick) if tick == self.tick and not self.answered:
-                self._take_command(message)
             case End():
                 self.station_end = message
+            case _:
+                return False
+        return True
 
     def _take_command(self, command: Command) -> None:
         if len(self._estimates) < command.estimates:
@@ -166,7 +199,7 @@ class Gateway:
 
     def _row(self, sent: Command) -> TraceRow:
         x_est, y_est, theta_est = self._estimates[0][:3] if self._estimates else (None,) * 3
-        v, omega = (self._in_force.v, self._in_force.omega) if self._in_force else (0.0, 0.0)
+        v, omega = self._apply()
         return TraceRow(
             self.tick,
             self.tick * self._config.sample_time,

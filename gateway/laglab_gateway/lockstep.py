@@ -8,6 +8,7 @@ from typing import Protocol
 from laglab_gateway.core import Gateway, Outcome, from_station
 from laglab_gateway.errors import StationSilentError
 from laglab_gateway.recorder import Recorder
+from laglab_gateway.watch import Watch
 from laglab_protocol import EndReason
 
 
@@ -47,8 +48,11 @@ def serve(
     recorder: Recorder,
     patience: Patience,
     progress: Callable[[int], None],
+    watch: Watch | None = None,
 ) -> Outcome:
     """Run a gateway to its last tick; ``progress`` is told of each tick that is over.
+
+    Those who ``watch`` are looked after meanwhile.
 
     Ctrl-C ends the run in order: the station is told and the outcome says INTERRUPTED.
 
@@ -57,13 +61,15 @@ def serve(
         CommandError: the station commanded a speed that is not finite.
         EndpointError: the link itself broke.
     """
-    link = _Conversation(gateway, endpoint, recorder, patience)
+    watch = watch or Watch(gateway.services, [])
+    link = _Conversation(gateway, endpoint, recorder, patience, watch)
     try:
         link.wait_for_station()
         while gateway.outcome is None:
             link.exchange()
             row = gateway.close_tick()
             recorder.row(row)
+            watch.poll(gateway.state)
             progress(row.tick)
     except KeyboardInterrupt:
         gateway.outcome = Outcome(EndReason.INTERRUPTED, gateway.tick)
@@ -75,12 +81,18 @@ class _Conversation:
     """One gateway's conversation over one endpoint."""
 
     def __init__(
-        self, gateway: Gateway, endpoint: Link, recorder: Recorder, patience: Patience
+        self,
+        gateway: Gateway,
+        endpoint: Link,
+        recorder: Recorder,
+        patience: Patience,
+        watch: Watch,
     ) -> None:
         self._gateway = gateway
         self._endpoint = endpoint
         self._recorder = recorder
         self._patience = patience
+        self._watch = watch
 
     def wait_for_station(self) -> None:
         started = monotonic()
@@ -127,3 +139,7 @@ class _Conversation:
         if any(from_station(frame) for frame in frames):
             self._endpoint.accept_peer()
         self._recorder.frames(self._gateway.time_us, [frame.raw for frame in frames])
+        if replies := self._gateway.take_replies():
+            self._send(replies)
+        if not data:
+            self._watch.poll(self._gateway.state)

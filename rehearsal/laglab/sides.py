@@ -28,8 +28,9 @@ def robot_parameters(scenario: Scenario) -> RobotParameters:
 @contextmanager
 def open_gateway(scenario: Scenario) -> Iterator[Gateway]:
     """The robot's side, its FMU loaded until the context ends."""
-    with Robot.open(scenario.fmi, robot_parameters(scenario)) as robot:
-        plant = FmuPlant(robot, scenario.wheel_radius, scenario.track)
+    parameters = robot_parameters(scenario)
+    with Robot.open(scenario.fmi, parameters) as robot:
+        plant = FmuPlant(robot, parameters)
         config = GatewayConfig(
             command_delay=scenario.command_delay,
             measurement_delay=scenario.measurement_delay,
