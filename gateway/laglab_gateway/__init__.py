@@ -20,8 +20,10 @@ from laglab_gateway.recorder import (
     NoRecorder,
     Recorder,
 )
+from laglab_gateway.services import Parameter, Parameters, Services, standard_parameters
 from laglab_gateway.timeline import Direction, Event
 from laglab_gateway.trace import Trace, TraceRow, read_trace
+from laglab_gateway.watch import Watch, Watcher
 
 __all__ = [
     "IDEAL",
@@ -45,19 +47,25 @@ __all__ = [
     "Link",
     "NoRecorder",
     "Outcome",
+    "Parameter",
+    "Parameters",
     "Patience",
     "Plant",
     "RandomFates",
     "RecordedFates",
     "Recorder",
     "Safety",
+    "Services",
     "StationSilentError",
     "TimelineError",
     "Trace",
     "TraceError",
     "TraceRow",
+    "Watch",
+    "Watcher",
     "read_link_log",
     "read_trace",
     "serve_lockstep",
     "serve_realtime",
+    "standard_parameters",
 ]

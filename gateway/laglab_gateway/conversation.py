@@ -8,6 +8,7 @@ from typing import Protocol
 from laglab_gateway.core import Gateway, Outcome, from_station
 from laglab_gateway.errors import StationSilentError
 from laglab_gateway.recorder import Recorder
+from laglab_gateway.watch import Watch
 
 END_TRIES = 5
 """A lost END only costs the station its silence timeout, so a few tries are enough."""
@@ -48,6 +49,7 @@ class Conversation:
         endpoint: Link,
         recorder: Recorder,
         patience: Patience,
+        watch: Watch,
         now: Callable[[], float] = monotonic,
     ) -> None:
         self.now = now
@@ -55,6 +57,7 @@ class Conversation:
         self._endpoint = endpoint
         self._recorder = recorder
         self._patience = patience
+        self._watch = watch
         self._heard = now()
 
     def wait_for_station(self) -> None:
@@ -80,6 +83,13 @@ class Conversation:
             self._endpoint.accept_peer()
             self._heard = self.now()
         self._recorder.frames(self._gateway.time_us, [frame.raw for frame in frames])
+        self._reply()
+        if not data:
+            self._watch.poll(self._gateway.state)
+
+    def _reply(self) -> None:
+        if replies := self._gateway.take_replies():
+            self.send(replies)
 
     def listen_for(self, done: Callable[[], bool]) -> bool:
         """Listen until `done`, or until it is time to repeat: then False."""
@@ -97,13 +107,15 @@ class Conversation:
             raise StationSilentError(self._gateway.tick, silence)
 
     def finish_tick(self) -> int:
-        """Close the tick, record it, tell what the robot did by itself; returns the tick."""
+        """Close the tick, record it, tell everybody of what the robot did; returns the tick."""
         row = self._gateway.close_tick()
         self._recorder.row(row)
         if rows := self._gateway.take_link_rows():
             self._recorder.link(rows)
         if notices := self._gateway.take_notices():
-            self.send(notices)
+            self._watch.tell(notices)
+            self._reply()
+        self._watch.poll(self._gateway.state)
         return row.tick
 
     def say_goodbye(self, outcome: Outcome) -> None:

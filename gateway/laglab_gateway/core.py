@@ -13,10 +13,11 @@ from typing import NamedTuple
 
 from laglab_gateway.audit import Audit, DirectionAudit
 from laglab_gateway.channel import Channel
-from laglab_gateway.drive import Drive, Safety, follow, refusal, speeds, watch
+from laglab_gateway.drive import Drive, Safety, follow, refusal, speeds, supervise
 from laglab_gateway.fates import Fates
 from laglab_gateway.linklog import LinkRow
 from laglab_gateway.plant import Plant
+from laglab_gateway.services import RobotState, Services, standard_parameters
 from laglab_gateway.timeline import Direction
 from laglab_gateway.trace import TraceRow
 from laglab_protocol import (
@@ -72,6 +73,7 @@ class Gateway:
         plant: Plant,
         config: GatewayConfig,
         fates: Mapping[Direction, Fates] | None = None,
+        services: Services | None = None,
         codec: Codec | None = None,
     ) -> None:
         n, m, Ts = config.command_delay, config.measurement_delay, config.sample_time
@@ -84,6 +86,8 @@ class Gateway:
         self._plant = plant
         codec = codec or Codec(ROBOT_SYSTEM, ROBOT_COMPONENT)
         self._sender, self._receiver = codec.sender, codec.receiver
+        self.services = services or Services(standard_parameters(n, m))
+        self._replies: list[Message] = []
         self._notices: list[Message] = []
         fates = fates or {}
         self._commands: Channel[Command] = Channel("command", n, Ts, fates.get("command"))
@@ -96,6 +100,8 @@ class Gateway:
         self._begin_tick()
 
     def _begin_tick(self) -> None:
+        if pose := self.services.arming.take_reset():
+            self._plant.place(*pose)
         self._reading = self._plant.read()
         self._batch: list[Message] = []
         self._estimates: list[Estimate] = []
@@ -105,6 +111,14 @@ class Gateway:
     def time_us(self) -> int:
         """Simulation time of this tick [µs]."""
         return round(self.tick * self._config.sample_time * 1e6)
+
+    @property
+    def state(self) -> RobotState:
+        """The robot at this tick, for those who ask."""
+        reading = self._reading
+        return RobotState(
+            self.time_us, reading.x, reading.y, reading.theta, reading.v, reading.omega
+        )
 
     @property
     def answered(self) -> bool:
@@ -135,22 +149,28 @@ class Gateway:
         if whole:
             frames += self._receiver.end_datagram()
         for frame in frames:
-            if from_station(frame):
-                self._take(frame.message)
+            if not from_station(frame) or not self._take(frame.message):
+                self._replies += self.services.answer(frame, self.state)
         return frames
 
-    def _take(self, message: Message) -> None:
+    def _take(self, message: Message) -> bool:
+        """Take what belongs to the loop; False when it does not."""
         match message:
             case Heartbeat():
                 self.connected = True
-            case Estimate(tick=tick) if tick == self.tick and not self.answered:
+            case Estimate() if message.tick == self.tick and not self.answered:
                 self._estimates.append(message)
-            case Command(tick=tick) if tick == self.tick and not self.answered:
+            case Command() if message.tick == self.tick and not self.answered:
                 self._take_answer(message)
-            case Command(tick=tick) if self._answered_through < tick < self.tick:
+            case Command() if self._answered_through < message.tick < self.tick:
                 self._push(message)
+            case Command() | Estimate():
+                pass  # said again, or of a tick that has not come
             case End():
                 self.station_end = message
+            case _:
+                return False
+        return True
 
     def _take_answer(self, command: Command) -> None:
         if len(self._estimates) < command.estimates:
@@ -171,21 +191,28 @@ class Gateway:
                 self.audit.refused[refused] += 1
             else:
                 self._drive = follow(command, k)
-        watched = watch(self._drive, k, config.sample_time, config.safety)
-        if watched.mode is not self._drive.mode:
+        supervised = supervise(self._drive, k, config.sample_time, config.safety)
+        if supervised.mode is not self._drive.mode:
             self._announce_stop()
-        self._drive = watched
-        self._speeds = speeds(self._drive, k, config.sample_time, config.safety)
+        self._drive = supervised
+        driven = speeds(self._drive, k, config.sample_time, config.safety)
+        self._speeds = self.services.allow(*driven)
 
     def _announce_stop(self) -> None:
         self.audit.stops.append(self.tick)
         text = f"no fresh command for {self._config.safety.link_timeout} s: stopping"
         self._notices.append(Statustext(MAV_SEVERITY_WARNING, text.encode()))
 
-    def take_notices(self) -> list[bytes]:
-        """The frames that tell of what the robot did by itself since the last call."""
+    def take_replies(self) -> list[bytes]:
+        """The frames that answer requests since the last call: not of the loop, to be sent too."""
+        replies, self._replies = self._replies, []
+        return [self._sender.frame(message) for message in replies]
+
+    def take_notices(self) -> list[Message]:
+        """What the robot did by itself since the last call: everybody is told."""
         notices, self._notices = self._notices, []
-        return [self._sender.frame(message) for message in notices]
+        self._replies += notices
+        return notices
 
     def take_link_rows(self) -> list[LinkRow]:
         """What the link did to the frames that entered it since the last call."""

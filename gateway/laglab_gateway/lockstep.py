@@ -5,6 +5,7 @@ from collections.abc import Callable
 from laglab_gateway.conversation import Conversation, Link, Patience
 from laglab_gateway.core import Gateway, Outcome
 from laglab_gateway.recorder import Recorder
+from laglab_gateway.watch import Watch
 from laglab_protocol import EndReason
 
 
@@ -13,9 +14,12 @@ def serve_lockstep(
     endpoint: Link,
     recorder: Recorder,
     patience: Patience,
+    watch: Watch,
     progress: Callable[[int], None],
 ) -> Outcome:
     """Run a gateway to its last tick; `progress` is told of each tick that is over.
+
+    Those who `watch` are looked after meanwhile.
 
     Ctrl-C ends the run in order: the station is told and the outcome says INTERRUPTED.
 
@@ -23,7 +27,7 @@ def serve_lockstep(
         StationSilentError: the station never came, or fell silent.
         EndpointError: the link itself broke.
     """
-    conversation = Conversation(gateway, endpoint, recorder, patience)
+    conversation = Conversation(gateway, endpoint, recorder, patience, watch)
     try:
         conversation.wait_for_station()
         while gateway.outcome is None:

@@ -13,6 +13,7 @@ import numpy as np
 from laglab_gateway.conversation import Conversation, Link, Patience
 from laglab_gateway.core import Gateway, Outcome
 from laglab_gateway.recorder import Recorder, TimingRow
+from laglab_gateway.watch import Watch
 from laglab_protocol import EndReason
 
 LONGEST_WAIT = 0.04
@@ -47,6 +48,7 @@ def serve_realtime(
     endpoint: Link,
     recorder: Recorder,
     patience: Patience,
+    watch: Watch,
     progress: Callable[[int], None],
     period: float,
     now: Callable[[], float] = monotonic,
@@ -57,7 +59,7 @@ def serve_realtime(
         StationSilentError: the station never came, or fell silent for longer than allowed.
         EndpointError: the link itself broke.
     """
-    conversation = Conversation(gateway, endpoint, recorder, patience, now)
+    conversation = Conversation(gateway, endpoint, recorder, patience, watch, now)
     lateness = Lateness(period)
     try:
         conversation.wait_for_station()

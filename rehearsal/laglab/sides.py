@@ -23,6 +23,7 @@ from laglab_gateway import (
     RandomFates,
     RecordedFates,
     Recorder,
+    Watch,
     read_link_log,
     serve_lockstep,
     serve_realtime,
@@ -46,8 +47,9 @@ def robot_parameters(scenario: Scenario) -> RobotParameters:
 @contextmanager
 def open_gateway(scenario: Scenario) -> Iterator[Gateway]:
     """The robot's side, its FMU loaded until the context ends."""
-    with Robot.open(scenario.fmi, robot_parameters(scenario)) as robot:
-        plant = FmuPlant(robot, scenario.wheel_radius, scenario.track)
+    parameters = robot_parameters(scenario)
+    with Robot.open(scenario.fmi, parameters) as robot:
+        plant = FmuPlant(robot, parameters)
         config = GatewayConfig(
             command_delay=scenario.command_delay,
             measurement_delay=scenario.measurement_delay,
@@ -85,11 +87,14 @@ def serve(
     progress: Callable[[int], None],
 ) -> tuple[Outcome, dict[str, Any]]:
     """Run the robot's side at the scenario's pace: how it ended, and what the stamps tell."""
+    watch = Watch(gateway.services, [])
     if scenario.pace == "lockstep":
-        outcome = serve_lockstep(gateway, endpoint, recorder, patience, progress)
+        outcome = serve_lockstep(gateway, endpoint, recorder, patience, watch, progress)
         return outcome, {"link": gateway.audit.report()}
     period = scenario.sample_time / scenario.speed
-    outcome, lateness = serve_realtime(gateway, endpoint, recorder, patience, progress, period)
+    outcome, lateness = serve_realtime(
+        gateway, endpoint, recorder, patience, watch, progress, period
+    )
     return outcome, {"link": gateway.audit.report(), "timing": lateness.report()}
 
 

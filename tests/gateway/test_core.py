@@ -36,7 +36,7 @@ def robot() -> Iterator[Robot]:
 
 def gateway_of(robot: Robot, n: int, m: int, last_tick: int = LAST_TICK) -> Gateway:
     robot.reset(PARAMETERS)
-    plant = FmuPlant(robot, PARAMETERS.wheel_radius, PARAMETERS.track)
+    plant = FmuPlant(robot, PARAMETERS)
     return Gateway(plant, GatewayConfig(n, m, last_tick, PARAMETERS.sample_time))
 
 
