@@ -9,12 +9,12 @@ from laglab_controller.estimator import Applied, Estimator, Measured, State
 from laglab_controller.family import ESTIMATORS
 from laglab_controller.law import Drive, Law
 from laglab_controller.loop import run_station
-from laglab_controller.model import Model, RobotModel
+from laglab_controller.model import Model, NonlinearModel
 from laglab_controller.popf import Popf
 from laglab_controller.replay import Replay, constant_delay, replay
-from laglab_controller.rigid import RigidMotions
+from laglab_controller.robot import RobotModel
 from laglab_controller.station import Station
-from laglab_controller.windows import ReplayedInputs
+from laglab_controller.windows import ReplayedInputs, RigidMotions
 
 __all__ = [
     "ESTIMATORS",
@@ -29,6 +29,7 @@ __all__ = [
     "Law",
     "Measured",
     "Model",
+    "NonlinearModel",
     "Popf",
     "Replay",
     "ReplayedInputs",

@@ -13,8 +13,9 @@ from laglab_controller.errors import ConfigError
 from laglab_controller.estimator import Estimator, Measured, State
 from laglab_controller.family import Kind, estimator_kind
 from laglab_controller.law import STAND_STILL, Drive, Law, as_input
-from laglab_controller.model import RobotModel, Vector, constant
-from laglab_controller.rigid import Motion, RigidMotions, moved
+from laglab_controller.model import Vector, constant
+from laglab_controller.motion import STILL, Motion, compose
+from laglab_controller.robot import RobotModel
 from laglab_controller.sliding import SlidingProduct
 
 DIVERGED = 1000.0
@@ -72,15 +73,9 @@ class Controller:
     def _estimator(self) -> Estimator[Any]:
         return self.kind.make(self.config.model)
 
-    @cached_property
-    def _motions(self) -> RigidMotions:
-        return RigidMotions(self.config.model)
-
     def start(self) -> Control:
         """Tick 0, before its correction."""
-        in_flight: SlidingProduct[Vector, Motion] = SlidingProduct(
-            self._motions.compose, self._motions.identity
-        )
+        in_flight: SlidingProduct[Vector, Motion] = SlidingProduct(compose, STILL)
         for _ in range(self.config.command_delay):
             in_flight = self._sent(in_flight, STAND_STILL)
         x, P = np.array(self.config.initial_estimate), np.array(self.config.initial_covariance)
@@ -105,13 +100,15 @@ class Controller:
 
     def _at_arrival(self, x: Vector, in_flight: SlidingProduct[Vector, Motion]) -> Vector:
         """(29): where the robot will be when the command that is now made comes into force."""
-        return moved(x, in_flight.product) if self.kind.predicts else x
+        if not self.kind.predicts:
+            return x
+        return np.array(compose(Motion(*x.tolist()), in_flight.product)[:3])
 
     def _sent(
         self, in_flight: SlidingProduct[Vector, Motion], drive: Drive
     ) -> SlidingProduct[Vector, Motion]:
         u = as_input(drive)
-        return in_flight.push(u, self._motions.over(u))
+        return in_flight.push(u, self.config.model.motion(u))
 
 
 def diverged(x: Vector) -> bool:

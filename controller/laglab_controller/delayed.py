@@ -1,7 +1,7 @@
 """`delayed-ekf`: an EKF that lives where the measurements belong, carried on to the present."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Generic, NamedTuple, TypeVar
 
@@ -74,9 +74,10 @@ class DelayedEkf(Generic[W]):
 
     def predict(self, state: DelayedState[W], u: Vector) -> DelayedState[W]:
         """One more input in the window; unmeasured, the EKF follows `memory` ticks behind."""
+        tick = state.tick + 1
         window = state.window.push(u, self.windows.over(u))
-        predicted = replace(state, tick=state.tick + 1, window=window)
-        return self._advance(predicted, predicted.tick - self.memory, z=None)
+        predicted = DelayedState(tick, state.filtered, window, self.windows)
+        return self._advance(predicted, tick - self.memory, z=None)
 
     def correct(
         self,
@@ -87,24 +88,26 @@ class DelayedEkf(Generic[W]):
         """Roll back to the oldest news, replay from there, then go on to the newest measurement."""
         oldest, newest = _span(state.filtered)
         late = {s: z for s, z in reversed(measurements) if oldest <= s <= newest}
-        known = {j + 1: u for j, u in inputs if oldest < j + 1}
+        known = {j + 1: u for j, u in inputs if oldest <= j}
         if late or known:
             state = self._revise(state, late, known)
-        for s, z in sorted(measurements, key=lambda measured: measured.tick):
+        for s, z in sorted(measurements, key=_sampled):
             state = self._advance(state, s, z)
         return state
 
     def _advance(self, state: DelayedState[W], s: int, z: Vector | None) -> DelayedState[W]:
         """Bring the EKF up to tick s > its own, and correct it there."""
         filtered, window = state.filtered, state.window
+        if filtered.newest.tick >= s:
+            return state
         while filtered.newest.tick < s:
             u, window = window.pop()
             filtered = self._extend(filtered, u, z if filtered.newest.tick + 1 == s else None)
-        return replace(state, filtered=filtered, window=window)
+        return DelayedState(state.tick, filtered, window, self.windows)
 
     def _extend(self, filtered: Log[Filtered], u: Vector, z: Vector | None) -> Log[Filtered]:
         tick, *_, posterior = filtered.newest
-        prior, _ = kalman.predict(self.model, posterior, u)
+        prior = Belief(*self.model.predict(*posterior, u))
         return append(filtered, self._corrected(tick + 1, u, prior, z), self.memory)
 
     def _corrected(self, tick: int, u: Vector | None, prior: Belief, z: Vector | None) -> Filtered:
@@ -125,7 +128,7 @@ class DelayedEkf(Generic[W]):
             else:
                 filtered = self._extend(filtered, u, z)
         window = self._with_inputs(state.window, known, newest=state.filtered.newest.tick)
-        return replace(state, filtered=filtered or state.filtered, window=window)
+        return DelayedState(state.tick, filtered or state.filtered, window, self.windows)
 
     def _with_inputs(
         self, window: SlidingProduct[Vector, W], known: Mapping[int, Vector], newest: int
@@ -133,13 +136,15 @@ class DelayedEkf(Generic[W]):
         """The window after tick `newest`, with those of its inputs that were wrong put right."""
         if not known or max(known) <= newest:
             return window
-        right: SlidingProduct[Vector, W] = SlidingProduct(
-            self.windows.compose, self.windows.identity
-        )
-        for tick, (u, _) in enumerate(window, start=newest + 1):
+        right = window.emptied()
+        for tick, u in enumerate(window, start=newest + 1):
             u = known.get(tick, u)
             right = right.push(u, self.windows.over(u))
         return right
+
+
+def _sampled(measured: Measured) -> int:
+    return measured.tick
 
 
 def _span(filtered: Log[Filtered]) -> tuple[int, int]:

@@ -31,8 +31,7 @@ class Ekf:
 
     def predict(self, state: EkfState, u: Vector) -> EkfState:
         """(27)."""
-        (x, P), _ = kalman.predict(self.model, Belief(state.x, state.P), u)
-        return EkfState(state.tick + 1, x, P, state.newest)
+        return EkfState(state.tick + 1, *self.model.predict(state.x, state.P, u), state.newest)
 
     def correct(
         self, state: EkfState, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()

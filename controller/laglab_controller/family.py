@@ -7,10 +7,10 @@ from laglab_controller.delayed import DelayedEkf
 from laglab_controller.ekf import Ekf
 from laglab_controller.errors import ConfigError
 from laglab_controller.estimator import Estimator
-from laglab_controller.model import RobotModel
 from laglab_controller.popf import Popf
 from laglab_controller.raw import Raw
-from laglab_controller.rigid import RigidMotions
+from laglab_controller.robot import RobotModel
+from laglab_controller.windows import RigidMotions
 
 
 class Kind(NamedTuple):
