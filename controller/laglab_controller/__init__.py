@@ -6,6 +6,7 @@ from laglab_controller.delayed import DelayedEkf
 from laglab_controller.ekf import Ekf
 from laglab_controller.errors import ConfigError, RobotSilentError, StationError
 from laglab_controller.estimator import Applied, Estimator, Measured, State
+from laglab_controller.exact import PopfExact
 from laglab_controller.family import ESTIMATORS
 from laglab_controller.law import Drive, Law
 from laglab_controller.loop import run_station
@@ -31,6 +32,7 @@ __all__ = [
     "Model",
     "NonlinearModel",
     "Popf",
+    "PopfExact",
     "Replay",
     "ReplayedInputs",
     "RigidMotions",

@@ -7,6 +7,7 @@ from laglab_controller.delayed import DelayedEkf
 from laglab_controller.ekf import Ekf
 from laglab_controller.errors import ConfigError
 from laglab_controller.estimator import Estimator
+from laglab_controller.exact import PopfExact
 from laglab_controller.popf import Popf
 from laglab_controller.raw import Raw
 from laglab_controller.robot import RobotModel
@@ -30,6 +31,7 @@ ESTIMATORS: Mapping[str, Kind] = {
         "the paper's filter with the innovation as (28) prints it",
         lambda model: Popf(model, innovation_at_k=True),
     ),
+    "popf-exact": Kind("the structure of popf with the true cross-covariances", PopfExact),
     "delayed-ekf": Kind(
         "the optimum: an EKF at the measurement's tick, carried forward over the known inputs",
         lambda model: DelayedEkf(model, RigidMotions(model)),
