@@ -143,7 +143,7 @@ class Station:
         command = Command(v, omega, tick, *self._robot, estimates=len(estimates))
         if control.estimate.x is not None and diverged(control.estimate.x):
             self._outcome = End(tick, EndReason.DIVERGED)
-            return [*estimates, command, self._outcome]
+            return [*estimates, self._outcome, command]  # the command closes the answer
         return [*estimates, command]
 
 

@@ -1,0 +1,30 @@
+"""The robot as a Functional Mock-up Unit: its build, and the stepper that drives it.
+
+The plant is equations (1) and (3) of the paper with wheel and sensor noise; `Robot` steps it by
+one sample.
+"""
+
+from laglab_fmu.build import build_fmus
+from laglab_fmu.errors import (
+    BuildError,
+    CallError,
+    CompilerNotFoundError,
+    FmuError,
+    FmuNotBuiltError,
+)
+from laglab_fmu.parameters import Reading, RobotParameters
+from laglab_fmu.robot import Robot
+from laglab_fmu.slave import fmu_path
+
+__all__ = [
+    "BuildError",
+    "CallError",
+    "CompilerNotFoundError",
+    "FmuError",
+    "FmuNotBuiltError",
+    "Reading",
+    "Robot",
+    "RobotParameters",
+    "build_fmus",
+    "fmu_path",
+]

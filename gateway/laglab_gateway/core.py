@@ -51,6 +51,11 @@ class Outcome(NamedTuple):
     tick: int
 
 
+def from_station(frame: Frame) -> bool:
+    """Whether the remote station sent it: nobody else may command."""
+    return (frame.system, frame.component) == (STATION_SYSTEM, STATION_COMPONENT)
+
+
 class Gateway:
     """A plant behind two delay lines, in lock-step with a remote station."""
 
@@ -110,17 +115,17 @@ class Gateway:
             command_tick,
         )
 
-    def receive(self, data: bytes, datagram: bool) -> list[Frame]:
-        """Take bytes from the link; returns the frames in them.
+    def receive(self, data: bytes, whole: bool) -> list[Frame]:
+        """Take bytes from the link; returns the frames in them. No frame goes on after ``whole``.
 
         Raises:
             CommandError: the station commands a speed that is not finite.
         """
         frames = self._receiver.receive(data)
-        if datagram:
+        if whole:
             frames += self._receiver.end_datagram()
         for frame in frames:
-            if (frame.system, frame.component) == (STATION_SYSTEM, STATION_COMPONENT):
+            if from_station(frame):
                 self._take(frame.message)
         return frames
 
@@ -160,10 +165,20 @@ class Gateway:
         return row
 
     def _row(self, sent: Command) -> TraceRow:
-        estimate = self._estimates[0][:3] if self._estimates else (None, None, None)
-        force = (self._in_force.v, self._in_force.omega) if self._in_force else (0.0, 0.0)
-        time = self.tick * self._config.sample_time
-        return TraceRow(self.tick, time, *self._reading[:6], *estimate, sent.v, sent.omega, *force)
+        x_est, y_est, theta_est = self._estimates[0][:3] if self._estimates else (None,) * 3
+        v, omega = (self._in_force.v, self._in_force.omega) if self._in_force else (0.0, 0.0)
+        return TraceRow(
+            self.tick,
+            self.tick * self._config.sample_time,
+            *self._reading[:6],
+            x_est,
+            y_est,
+            theta_est,
+            sent.v,
+            sent.omega,
+            v,
+            omega,
+        )
 
     def end(self, reason: EndReason) -> bytes:
         """The frame that tells the station that the run is over."""

@@ -3,11 +3,12 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from time import monotonic
+from typing import Protocol
 
-from laglab_gateway.core import Gateway, Outcome
+from laglab_gateway.core import Gateway, Outcome, from_station
 from laglab_gateway.errors import StationSilentError
 from laglab_gateway.recorder import Recorder
-from laglab_protocol import Endpoint, EndReason
+from laglab_protocol import EndReason
 
 
 @dataclass(frozen=True)
@@ -19,13 +20,30 @@ class Patience:
     connect: float | None = None
 
 
+class Link(Protocol):
+    """What this loop needs of an endpoint."""
+
+    @property
+    def datagrams(self) -> bool:
+        """Whether ``receive`` gives whole datagrams."""
+
+    def send(self, data: bytes) -> None:
+        """To the station."""
+
+    def receive(self, timeout: float) -> bytes:
+        """From the station; nothing when nothing came within ``timeout`` [s]."""
+
+    def accept_peer(self) -> None:
+        """The last bytes came from the station itself: from now on send there."""
+
+
 END_TRIES = 5
 """A lost END only costs the station its silence timeout, so a few tries are enough."""
 
 
 def serve(
     gateway: Gateway,
-    endpoint: Endpoint,
+    endpoint: Link,
     recorder: Recorder,
     patience: Patience,
     progress: Callable[[int], None],
@@ -39,7 +57,7 @@ def serve(
         CommandError: the station commanded a speed that is not finite.
         EndpointError: the link itself broke.
     """
-    link = _Link(gateway, endpoint, recorder, patience)
+    link = _Conversation(gateway, endpoint, recorder, patience)
     try:
         link.wait_for_station()
         while gateway.outcome is None:
@@ -53,11 +71,11 @@ def serve(
     return gateway.outcome
 
 
-class _Link:
+class _Conversation:
     """One gateway's conversation over one endpoint."""
 
     def __init__(
-        self, gateway: Gateway, endpoint: Endpoint, recorder: Recorder, patience: Patience
+        self, gateway: Gateway, endpoint: Link, recorder: Recorder, patience: Patience
     ) -> None:
         self._gateway = gateway
         self._endpoint = endpoint
@@ -67,7 +85,7 @@ class _Link:
     def wait_for_station(self) -> None:
         started = monotonic()
         while not self._gateway.connected:
-            self._listen(self._patience.repeat_after)
+            self._listen()
             waited = monotonic() - started
             if self._patience.connect is not None and waited > self._patience.connect:
                 raise StationSilentError(None, waited)
@@ -93,17 +111,19 @@ class _Link:
         """Listen until ``done``, or until it is time to repeat."""
         deadline = monotonic() + self._patience.repeat_after
         while not done():
-            left = deadline - monotonic()
-            if left <= 0:
+            if monotonic() > deadline:
                 return False
-            self._listen(left)
+            self._listen()
         return True
 
     def _send(self, frames: list[bytes]) -> None:
         self._recorder.frames(self._gateway.time_us, frames)
         self._endpoint.send(b"".join(frames))
 
-    def _listen(self, timeout: float) -> None:
-        data = self._endpoint.receive(timeout)
-        frames = self._gateway.receive(data, self._endpoint.datagrams)
+    def _listen(self) -> None:
+        data = self._endpoint.receive(self._patience.repeat_after)
+        # A silence ends an unfinished frame on a stream as the datagram's end does on UDP.
+        frames = self._gateway.receive(data, whole=self._endpoint.datagrams or not data)
+        if any(from_station(frame) for frame in frames):
+            self._endpoint.accept_peer()
         self._recorder.frames(self._gateway.time_us, [frame.raw for frame in frames])

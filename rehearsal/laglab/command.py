@@ -2,7 +2,6 @@
 
 import sys
 
-import click
 import typer
 
 from laglab.commands import compare, fmu, run, scenarios, sides
@@ -38,7 +37,7 @@ def main(arguments: list[str] | None = None) -> None:
 def _exit_code(arguments: list[str] | None) -> int:
     try:
         code = app(arguments, standalone_mode=False)
-    except click.ClickException as error:
+    except typer.TyperException as error:
         return _say(error.format_message(), error.exit_code)
     except LaglabError as error:
         return _say(str(error), error.exit_code)
@@ -46,7 +45,7 @@ def _exit_code(arguments: list[str] | None) -> int:
         return _say(str(error), RunError.exit_code)
     except SIDE_ERRORS as error:
         return _say(str(error), ScenarioError.exit_code)
-    except (click.Abort, KeyboardInterrupt):
+    except (typer.Abort, KeyboardInterrupt):
         return _say("interrupted", 130)
     return int(code or 0)
 

@@ -24,7 +24,7 @@ def draw_run(trace: Trace, scenario: Scenario) -> Figure:
 def draw_side_by_side(runs: Sequence[tuple[Trace, Scenario]]) -> Figure:
     """The same three panels for each run, a row each."""
     figure = Figure(figsize=(13, 4 * len(runs)), layout="constrained")
-    rows = np.atleast_1d(figure.subfigures(len(runs), 1))
+    rows = figure.subfigures(len(runs), 1, squeeze=False)[:, 0]
     for row, (trace, scenario) in zip(rows, runs, strict=True):
         plane, heading, speeds = row.subplots(1, 3)
         draw_path(plane, trace, scenario)

@@ -7,7 +7,6 @@ class InlineEndpoint:
     """An endpoint whose far end is a station core, called directly."""
 
     datagrams = True
-    name = "inline"
 
     def __init__(self, station: Station) -> None:
         self._station = station
@@ -22,5 +21,5 @@ class InlineEndpoint:
         """The next answer, or nothing."""
         return self._inbox.pop(0) if self._inbox else b""
 
-    def close(self) -> None:
-        """Nothing is open."""
+    def accept_peer(self) -> None:
+        """There is no other peer."""

@@ -62,15 +62,15 @@ def results_table(summary: dict[str, Any]) -> Table:
     table = Table(box=None, show_header=False)
     delays = f"{summary['n']} and {summary['m']} ticks"
     final = summary["final"]
+    estimated = summary.get("compare", {summary["estimator"]: summary["rms_error"]})
     factor = summary["real_time_factor"]
     rows = {
         "scenario": f"{summary['scenario']} (seed {summary['seed']}, {summary['transport']})",
         "estimator": summary["estimator"],
         "delays n, m": delays,
-        "at the end": f"ρ {final['rho']:.3g} m, θ error {final['theta_error']:.3g} rad, "
-        f"v {final['v']:.3g} m/s, ω {final['omega']:.3g} rad/s",
-        "RMS error of the estimate": _errors(summary["rms_error"]),
-        **{f"  {name}": _errors(errors) for name, errors in summary.get("compare", {}).items()},
+        "pose error at the end": f"ρ {final['rho']:.3g} m, θ {final['theta_error']:.3g} rad",
+        "speeds at the end": f"v {final['v']:.3g} m/s, ω {final['omega']:.3g} rad/s",
+        **{f"RMS error of {name}": _errors(errors) for name, errors in estimated.items()},
         "speed": f"{summary['ticks']} ticks in {summary['wall_time_s']:.2f} s"
         + (f", {factor:.1f} × real time" if factor else ""),
     }
@@ -81,5 +81,5 @@ def results_table(summary: dict[str, Any]) -> Table:
 
 def _errors(errors: dict[str, float] | None) -> str:
     if errors is None:
-        return "none: nothing was estimated"
+        return "nothing was estimated"
     return f"x {errors['x']:.3g} m, y {errors['y']:.3g} m, θ {errors['theta']:.3g} rad"

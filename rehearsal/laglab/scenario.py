@@ -1,5 +1,6 @@
 """Scenarios: what is run, as TOML files, checked field by field."""
 
+import math
 import re
 import tomllib
 from collections.abc import Mapping
@@ -107,14 +108,11 @@ class Scenario(BaseModel):
 
     def first_estimate(self) -> NDArray[np.float64]:
         """x̂_0, shape (3,): the true start, a pose, or drawn from N(start, P_0) by the seed."""
-        match self.initial_estimate:
-            case "start":
-                return np.array(self.start)
-            case "drawn":
-                draw = np.random.default_rng(self.seed).standard_normal(3)
-                return np.array(self.start) + np.sqrt(self.initial_covariance) * draw
-            case pose:
-                return np.array(pose)
+        if self.initial_estimate == "drawn":
+            draw = np.random.default_rng(self.seed).standard_normal(3)
+            return np.array(self.start) + math.sqrt(self.initial_covariance) * draw
+        pose = self.start if self.initial_estimate == "start" else self.initial_estimate
+        return np.array(pose)
 
     def to_toml(self) -> str:
         """The scenario as a file that ``load`` reads back to an equal one."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from laglab.rehearse import Ending, Transport
 from laglab.scenario import Scenario
-from laglab_controller import wrap
+from laglab_controller.angle import wrap
 from laglab_gateway import Trace
 from laglab_protocol import EndReason
 

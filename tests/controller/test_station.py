@@ -145,11 +145,11 @@ def test_a_robot_that_already_counts_high_is_joined():
 def test_an_estimate_that_is_not_finite_stops_the_robot_and_ends_the_run(estimator, bad):
     robot = Robot(make(estimator, initial_covariance=np.eye(3)))
     robot.tick(0)
-    *estimates, command, end = robot.tick(1, (1, bad))
+    *estimates, end, command = robot.tick(1, (1, bad))
     assert command == Command(0, 0, 1, 1, 1, len(estimates))
     assert len(estimates) == (estimator != "raw")
     assert end == robot.station.outcome == End(1, EndReason.DIVERGED)
-    assert robot.tick(1)[-1] == end
+    assert robot.tick(1)[-2:] == [end, command]
     assert robot.tick(2) == []
     assert not robot.station.closed
     assert robot.end(1, EndReason.DIVERGED) == []

@@ -80,7 +80,7 @@ def test_both_delays_are_exact(robot: Robot, n: int, m: int) -> None:
                 assert z[:3] == (sample.x_meas, sample.y_meas, sample.theta_meas)
             if s:
                 assert (z.v, z.omega) == (rows[s - 1].v, rows[s - 1].omega)
-        gateway.receive(station.say(command(k, v=0.1 + k)), datagram=True)
+        gateway.receive(station.say(command(k, v=0.1 + k)), whole=True)
         rows.append(gateway.close_tick())
     assert gateway.outcome == Outcome(EndReason.COMPLETED, LAST_TICK)
     for k, row in enumerate(rows):
@@ -98,11 +98,11 @@ def test_a_repeated_tick_brings_the_same_messages_in_new_frames(robot: Robot) ->
 def test_only_the_stations_command_for_this_tick_answers_it(robot: Robot) -> None:
     gateway, station = gateway_of(robot, 0, 0), Station()
     gateway.open_tick()
-    gateway.receive(station.say(command(7)), datagram=True)
-    gateway.receive(Station(system=42).say(command(0)), datagram=True)
-    gateway.receive(b"\xfd\x12 no frame at all", datagram=True)
+    gateway.receive(station.say(command(7)), whole=True)
+    gateway.receive(Station(system=42).say(command(0)), whole=True)
+    gateway.receive(b"\xfd\x12 no frame at all", whole=True)
     assert not gateway.answered
-    gateway.receive(station.say(command(0)), datagram=True)
+    gateway.receive(station.say(command(0)), whole=True)
     assert gateway.answered
 
 
@@ -110,9 +110,9 @@ def test_an_answer_that_lost_its_estimate_waits_for_the_repeat(robot: Robot) -> 
     gateway, station = gateway_of(robot, 0, 0), Station()
     gateway.open_tick()
     estimate = Estimate(1.0, 2.0, 3.0, *[0.0] * 6, 0)
-    gateway.receive(station.say(command(0, estimates=1)), datagram=False)
+    gateway.receive(station.say(command(0, estimates=1)), whole=False)
     assert not gateway.answered
-    gateway.receive(station.say(estimate, command(0, estimates=1)), datagram=False)
+    gateway.receive(station.say(estimate, command(0, estimates=1)), whole=False)
     assert gateway.answered
     assert gateway.close_tick()[8:11] == (1.0, 2.0, 3.0)
 
@@ -121,7 +121,7 @@ def test_the_last_tick_is_not_stepped(robot: Robot) -> None:
     gateway, station = gateway_of(robot, 0, 0, last_tick=0), Station()
     before = robot.read()
     gateway.open_tick()
-    gateway.receive(station.say(command(0, v=1.0)), datagram=True)
+    gateway.receive(station.say(command(0, v=1.0)), whole=True)
     gateway.close_tick()
     assert gateway.outcome == Outcome(EndReason.COMPLETED, 0)
     assert robot.read() == before
@@ -130,7 +130,7 @@ def test_the_last_tick_is_not_stepped(robot: Robot) -> None:
 def test_the_stations_end_ends_the_run_at_this_tick(robot: Robot) -> None:
     gateway, station = gateway_of(robot, 0, 0), Station()
     gateway.open_tick()
-    gateway.receive(station.say(End(0, EndReason.DIVERGED), command(0)), datagram=True)
+    gateway.receive(station.say(End(0, EndReason.DIVERGED), command(0)), whole=True)
     gateway.close_tick()
     assert gateway.outcome == Outcome(EndReason.DIVERGED, 0)
 
@@ -140,4 +140,4 @@ def test_a_command_that_is_not_finite_moves_nothing(robot: Robot, value: float) 
     gateway, station = gateway_of(robot, 0, 0), Station()
     gateway.open_tick()
     with pytest.raises(CommandError, match="tick 0 is not finite"):
-        gateway.receive(station.say(command(0, v=value)), datagram=True)
+        gateway.receive(station.say(command(0, v=value)), whole=True)

@@ -162,7 +162,7 @@ def test_a_dead_gateway_is_noticed_by_the_controller(start: Start, tmp_path: Pat
     _, errors = station.communicate(timeout=10)
     assert time.monotonic() - killed < NOTICED_WITHIN
     assert station.returncode == 4
-    assert re.search(r"laglab: .*since tick \d+", errors)
+    assert re.search(r"laglab: .*silent .*since its tick \d+", errors)
     assert "Traceback" not in errors
     assert_whole(tmp_path / "run" / "trace.csv")
 

@@ -43,10 +43,11 @@ def run(
         ending = rehearse(
             scenario, transport, directory, lambda tick: bar.update(task, completed=tick)
         )
-        bar.update(task, refresh=True)
+        if ending.outcome:
+            bar.update(task, completed=ending.outcome.tick)
     summary = write_results(scenario, transport, ending, _trace(directory, ending), directory)
     console = Console()
-    console.print(results_table(summary))
+    console.print(results_table(summary), crop=False, no_wrap=True)
     console.print(f"{summary['verdict']}", highlight=False, soft_wrap=True)
     console.print(f"results in {directory}", highlight=False, soft_wrap=True)
     raise typer.Exit(_exit_code(ending))

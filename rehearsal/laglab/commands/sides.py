@@ -13,7 +13,7 @@ from laglab.scenario import Scenario
 from laglab.sides import open_gateway, station_config
 from laglab_controller import Station, run_station
 from laglab_gateway import FileRecorder, NoRecorder, Patience, serve
-from laglab_protocol import open_endpoint
+from laglab_protocol import EndReason, open_endpoint
 
 ENDPOINT_HELP = "udpin://HOST:PORT, udpout://HOST:PORT, serial:///dev/ttyX:BAUD or pty://PATH."
 
@@ -53,5 +53,5 @@ def controller(
     """Be the remote station of SCENARIO: stabilise the robot at the other end."""
     with open_endpoint(endpoint) as link:
         typer.echo(f"calling {link.name}", err=True)
-        outcome = run_station(Station(station_config(scenario)), link)
-    raise typer.Exit(EXIT_CODES[outcome.reason])
+        end = run_station(Station(station_config(scenario)), link)
+    raise typer.Exit(EXIT_CODES[EndReason(end.reason)])

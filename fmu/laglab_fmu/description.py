@@ -1,0 +1,255 @@
+"""Both model descriptions, made from the one table of variables."""
+
+import uuid
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement
+
+from laglab_fmu.variables import (
+    INTEGRATIONS,
+    MODEL_NAME,
+    REFERENCE,
+    TYPES,
+    UNITS,
+    VARIABLES,
+    DeclaredType,
+    Kind,
+    Role,
+    Unit,
+    Variable,
+)
+
+TOKEN = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, repr((VARIABLES, TYPES, UNITS)))) + "}"
+"""Says which table a binary was made from; the same for both versions."""
+
+DESCRIPTION = "A differential-drive robot with wheel and sensor noise"
+STATES = ("x", "y", "theta")
+DEFAULT_EXPERIMENT = {"startTime": "0", "stopTime": "10", "tolerance": "1e-6", "stepSize": "0.01"}
+LOG_CATEGORIES = (
+    ("logEvents", "Initialization and sample events"),
+    ("logStatusDiscard", "Values that were refused"),
+    ("logStatusError", "Calls that were wrong"),
+)
+
+_CAUSALITY = {
+    Role.TIME: "independent",
+    Role.ROBOTS: "structuralParameter",
+    Role.PARAMETER: "parameter",
+    Role.INPUT: "input",
+    Role.STATE: "output",
+    Role.SAMPLED: "output",
+    Role.ALGEBRAIC: "output",
+    Role.DERIVATIVE: "local",
+}
+_VARIABILITY = {Role.ROBOTS: "fixed", Role.PARAMETER: "fixed", Role.SAMPLED: "discrete"}
+_HAS_START = (Role.ROBOTS, Role.PARAMETER, Role.INPUT)
+_OUTPUTS = (Role.STATE, Role.SAMPLED, Role.ALGEBRAIC)
+
+
+def number(value: float) -> str:
+    """A number as XML wants it: integers without a point."""
+    return str(int(value)) if value == int(value) else repr(value)
+
+
+def model_description_2() -> bytes:
+    """modelDescription.xml of FMI 2.0: one robot, no `time`."""
+    root = Element(
+        "fmiModelDescription",
+        fmiVersion="2.0",
+        modelName=MODEL_NAME,
+        guid=TOKEN,
+        description=DESCRIPTION,
+        license="MIT",
+        generationTool="laglab",
+        variableNamingConvention="structured",
+        numberOfEventIndicators="0",
+    )
+    for face in ("ModelExchange", "CoSimulation"):
+        SubElement(root, face, _capabilities_2(face))
+    _units(root)
+    definitions = SubElement(root, "TypeDefinitions")
+    for declared in TYPES:
+        simple = SubElement(
+            definitions, "SimpleType", name=declared.name, description=declared.description
+        )
+        SubElement(simple, "Real", _type_attributes(declared))
+    simple = SubElement(definitions, "SimpleType", name="Integration")
+    _items(SubElement(simple, "Enumeration"))
+    _log_categories(root)
+    SubElement(root, "DefaultExperiment", DEFAULT_EXPERIMENT)
+    variables = [v for v in VARIABLES if v.role not in (Role.TIME, Role.ROBOTS)]
+    index = {variable.name: str(i + 1) for i, variable in enumerate(variables)}
+    model = SubElement(root, "ModelVariables")
+    for variable in variables:
+        _variable_2(model, variable, index)
+    _structure_2(root, variables, index)
+    return _text(root)
+
+
+def model_description_3(fleet: bool = False) -> bytes:
+    """modelDescription.xml of FMI 3.0: one robot, or arrays of `robots`."""
+    root = Element(
+        "fmiModelDescription",
+        fmiVersion="3.0",
+        modelName="Fleet" if fleet else MODEL_NAME,
+        instantiationToken=TOKEN,
+        description=DESCRIPTION + (", many at once" if fleet else ""),
+        license="MIT",
+        generationTool="laglab",
+        variableNamingConvention="structured",
+    )
+    for face in ("CoSimulation",) if fleet else ("ModelExchange", "CoSimulation"):
+        SubElement(root, face, _capabilities_3(face))
+    _units(root)
+    definitions = SubElement(root, "TypeDefinitions")
+    for declared in TYPES:
+        attributes = {"name": declared.name, "description": declared.description}
+        SubElement(definitions, "Float64Type", attributes | _type_attributes(declared))
+    _items(SubElement(definitions, "EnumerationType", name="Integration"))
+    _log_categories(root)
+    SubElement(root, "DefaultExperiment", DEFAULT_EXPERIMENT)
+    variables = [v for v in VARIABLES if fleet or v.role is not Role.ROBOTS]
+    model = SubElement(root, "ModelVariables")
+    for variable in variables:
+        _variable_3(model, variable, fleet)
+    _structure_3(root, variables)
+    return _text(root)
+
+
+def _capabilities_2(face: str) -> dict[str, str]:
+    attributes = {
+        "modelIdentifier": MODEL_NAME,
+        "canNotUseMemoryManagementFunctions": "true",
+    }
+    if face == "CoSimulation":
+        attributes["canHandleVariableCommunicationStepSize"] = "true"
+    return attributes
+
+
+def _capabilities_3(face: str) -> dict[str, str]:
+    attributes = {"modelIdentifier": MODEL_NAME}
+    if face == "CoSimulation":
+        attributes["canHandleVariableCommunicationStepSize"] = "true"
+    return attributes
+
+
+def _units(root: Element) -> None:
+    definitions = SubElement(root, "UnitDefinitions")
+    for unit in UNITS:
+        element = SubElement(definitions, "Unit", name=unit.name)
+        SubElement(element, "BaseUnit", {base: str(power) for base, power in unit.powers})
+        if unit.display:
+            name, factor = unit.display
+            SubElement(element, "DisplayUnit", name=name, factor=repr(factor))
+
+
+def _type_attributes(declared: DeclaredType) -> dict[str, str]:
+    unit = _unit(declared)
+    attributes = {"quantity": declared.quantity, "unit": unit.name}
+    return attributes | ({"displayUnit": unit.display[0]} if unit.display else {})
+
+
+def _unit(declared: DeclaredType) -> Unit:
+    return next(unit for unit in UNITS if unit.name == declared.unit)
+
+
+def _items(enumeration: Element) -> None:
+    for value, (name, description) in enumerate(INTEGRATIONS, start=1):
+        SubElement(enumeration, "Item", name=name, value=str(value), description=description)
+
+
+def _log_categories(root: Element) -> None:
+    categories = SubElement(root, "LogCategories")
+    for name, description in LOG_CATEGORIES:
+        SubElement(categories, "Category", name=name, description=description)
+
+
+def _variability(variable: Variable) -> str:
+    return _VARIABILITY.get(variable.role, "continuous")
+
+
+def _bounds(variable: Variable) -> dict[str, str]:
+    bounds = {"min": variable.minimum, "max": variable.maximum, "nominal": variable.nominal}
+    return {name: number(value) for name, value in bounds.items() if value is not None}
+
+
+def _start(variable: Variable) -> dict[str, str]:
+    if variable.role not in _HAS_START:
+        return {}
+    if variable.kind is Kind.BOOLEAN:
+        return {"start": "true" if variable.start else "false"}
+    return {"start": number(variable.start)}
+
+
+def _common(variable: Variable) -> dict[str, str]:
+    attributes = {
+        "name": variable.name,
+        "valueReference": str(REFERENCE[variable.name]),
+        "causality": _CAUSALITY[variable.role],
+        "variability": _variability(variable),
+        "description": variable.description,
+    }
+    if variable.role is Role.PARAMETER:
+        attributes["initial"] = "exact"
+    elif variable.role not in (Role.TIME, Role.INPUT, Role.ROBOTS):
+        attributes["initial"] = "calculated"
+    return attributes
+
+
+def _variable_2(model: Element, variable: Variable, index: dict[str, str]) -> None:
+    scalar = SubElement(model, "ScalarVariable", _common(variable))
+    attributes = _bounds(variable) | _start(variable)
+    if variable.declared_type:
+        attributes["declaredType"] = variable.declared_type
+    if variable.state:
+        attributes["derivative"] = index[variable.state]
+    kind = {Kind.FLOAT64: "Real", Kind.INT32: "Integer"}.get(variable.kind, variable.kind.value)
+    SubElement(scalar, kind, attributes)
+
+
+def _variable_3(model: Element, variable: Variable, fleet: bool) -> None:
+    attributes = _common(variable) | _bounds(variable) | _start(variable)
+    if variable.declared_type:
+        attributes["declaredType"] = variable.declared_type
+    if variable.state:
+        attributes["derivative"] = str(REFERENCE[variable.state])
+    element = SubElement(model, variable.kind.value, attributes)
+    if fleet and variable.role not in (Role.TIME, Role.ROBOTS):
+        SubElement(element, "Dimension", valueReference=str(REFERENCE["robots"]))
+
+
+def _dependencies(variable: Variable) -> tuple[str, ...]:
+    return (variable.name,) if variable.role is Role.STATE else variable.depends_on
+
+
+def _structure_2(root: Element, variables: list[Variable], index: dict[str, str]) -> None:
+    structure = SubElement(root, "ModelStructure")
+    for group, roles in (("Outputs", _OUTPUTS), ("Derivatives", (Role.DERIVATIVE,))):
+        unknowns = SubElement(structure, group)
+        for variable in variables:
+            if variable.role in roles:
+                depends = " ".join(index[name] for name in _dependencies(variable))
+                attributes = {"index": index[variable.name], "dependencies": depends}
+                SubElement(unknowns, "Unknown", attributes)
+    initial = SubElement(structure, "InitialUnknowns")
+    for variable in variables:
+        if variable.role in (*_OUTPUTS, Role.DERIVATIVE):
+            SubElement(initial, "Unknown", index=index[variable.name])
+
+
+def _structure_3(root: Element, variables: list[Variable]) -> None:
+    structure = SubElement(root, "ModelStructure")
+    for group, roles in (("Output", _OUTPUTS), ("ContinuousStateDerivative", (Role.DERIVATIVE,))):
+        for variable in variables:
+            if variable.role in roles:
+                depends = " ".join(str(REFERENCE[name]) for name in _dependencies(variable))
+                reference = str(REFERENCE[variable.name])
+                SubElement(structure, group, valueReference=reference, dependencies=depends)
+    for variable in variables:
+        if variable.role in (*_OUTPUTS, Role.DERIVATIVE):
+            SubElement(structure, "InitialUnknown", valueReference=str(REFERENCE[variable.name]))
+
+
+def _text(root: Element) -> bytes:
+    ElementTree.indent(root)
+    text: bytes = ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)
+    return text + b"\n"

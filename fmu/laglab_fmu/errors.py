@@ -1,0 +1,21 @@
+"""What can go wrong with the FMU: one tree."""
+
+
+class FmuError(Exception):
+    """Base of this component's errors: what happened, to what, and what to do."""
+
+
+class BuildError(FmuError):
+    """The FMU could not be built."""
+
+
+class CompilerNotFoundError(BuildError):
+    """There is neither a C compiler nor ziglang."""
+
+
+class FmuNotBuiltError(FmuError):
+    """The FMU file is not where the installation should have put it."""
+
+
+class CallError(FmuError):
+    """The FMU refused a call; carries what it logged."""

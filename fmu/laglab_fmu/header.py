@@ -1,0 +1,76 @@
+"""The C header made from the table of variables."""
+
+import math
+
+from laglab_fmu.variables import VARIABLES, Kind, Role, Variable
+
+_C_TYPE = {
+    Kind.FLOAT64: "TYPE_FLOAT64",
+    Kind.INT32: "TYPE_INT32",
+    Kind.UINT64: "TYPE_UINT64",
+    Kind.BOOLEAN: "TYPE_BOOLEAN",
+    Kind.ENUMERATION: "TYPE_INT64",
+}
+
+_C_ROLE = {
+    Role.TIME: "ROLE_TIME",
+    Role.ROBOTS: "ROLE_ROBOTS",
+    Role.PARAMETER: "ROLE_PARAMETER",
+    Role.INPUT: "ROLE_INPUT",
+    Role.DERIVATIVE: "ROLE_DERIVATIVE",
+}
+
+_TEMPLATE = """\
+/* Made from the table of variables; do not edit. */
+#ifndef LAGLAB_VARIABLES_H
+#define LAGLAB_VARIABLES_H
+
+#include <math.h>
+
+#include "instance.h"
+
+#define MODEL_TOKEN "{token}"
+
+enum {{
+{references}
+    VARIABLES
+}};
+
+static const Variable VARIABLE[VARIABLES] = {{
+{lines}
+}};
+
+#endif
+"""
+
+
+def variables_header(token: str) -> str:
+    """The text of `variables.h`: value references, and what the C side needs of each variable."""
+    return _TEMPLATE.format(
+        token=token,
+        references="\n".join(f"    {_constant(variable)}," for variable in VARIABLES),
+        lines="\n".join(_line(variable) for variable in VARIABLES),
+    )
+
+
+def _constant(variable: Variable) -> str:
+    return f"VR_{variable.field.upper()}"
+
+
+def _line(variable: Variable) -> str:
+    in_robot = variable.role not in (Role.TIME, Role.ROBOTS)
+    cells = (
+        f'"{variable.name}"',
+        _C_TYPE[variable.kind],
+        _C_ROLE.get(variable.role, "ROLE_OUTPUT"),
+        f"offsetof(Robot, {variable.field})" if in_robot else "0",
+        _number(variable.minimum, -math.inf),
+        _number(variable.maximum, math.inf),
+        repr(float(variable.start)),
+    )
+    return "    {" + ", ".join(cells) + "},"
+
+
+def _number(value: float | None, default: float) -> str:
+    number = default if value is None else float(value)
+    return repr(number) if math.isfinite(number) else ("-" if number < 0 else "") + "INFINITY"

@@ -1,0 +1,72 @@
+/* Model exchange: continuous states and sample events. */
+#include "instance.h"
+
+#include <math.h>
+
+static const double SAMPLE_TOLERANCE = 1e-9; /* samples */
+
+void instance_get_states(const Instance *instance, double states[]) {
+    for (size_t i = 0; i < instance->robots; i++) {
+        states[i] = instance->robot[i].x;
+        states[i + instance->robots] = instance->robot[i].y;
+        states[i + 2 * instance->robots] = instance->robot[i].theta;
+    }
+}
+
+Status instance_set_states(Instance *instance, const double states[]) {
+    for (size_t i = 0; i < STATES * instance->robots; i++) {
+        if (!isfinite(states[i])) {
+            return instance_log(instance, STATUS_DISCARD, "continuous state %zu (%s) = %g refused: it must be finite", i,
+                                (const char *[]){"x", "y", "theta"}[i / instance->robots], states[i]);
+        }
+    }
+    for (size_t i = 0; i < instance->robots; i++) {
+        instance->robot[i].x = states[i];
+        instance->robot[i].y = states[i + instance->robots];
+        instance->robot[i].theta = states[i + 2 * instance->robots];
+    }
+    instance->stale = true;
+    return STATUS_OK;
+}
+
+void instance_get_derivatives(Instance *instance, double derivatives[]) {
+    instance_refresh(instance);
+    for (size_t i = 0; i < instance->robots; i++) {
+        Robot *robot = &instance->robot[i];
+        robot_derivatives(robot);
+        derivatives[i] = robot->der_x;
+        derivatives[i + instance->robots] = robot->der_y;
+        derivatives[i + 2 * instance->robots] = robot->der_theta;
+    }
+}
+
+Status instance_set_time(Instance *instance, double time) {
+    if (!isfinite(time) || time < instance->start_time) {
+        return instance_log(instance, STATUS_ERROR, "time %g s is before the start, %g s, or not finite", time,
+                            instance->start_time);
+    }
+    instance->time = time;
+    return STATUS_OK;
+}
+
+void instance_take_samples(Instance *instance) {
+    for (size_t i = 0; i < instance->robots; i++) {
+        Robot *robot = &instance->robot[i];
+        const double index = floor((instance->time - instance->start_time) / robot->sample_time + SAMPLE_TOLERANCE);
+        if (index > (double)robot->sample && index < 9e15) {
+            robot->sample = (int64_t)index - 1;
+            robot_sample(robot);
+            instance->stale = true;
+        }
+    }
+    instance_log(instance, STATUS_OK, "event at time %g s", instance->time);
+}
+
+double instance_next_sample(const Instance *instance) {
+    double next = INFINITY;
+    for (size_t i = 0; i < instance->robots; i++) {
+        const Robot *robot = &instance->robot[i];
+        next = fmin(next, instance->start_time + (double)(robot->sample + 1) * robot->sample_time);
+    }
+    return next;
+}

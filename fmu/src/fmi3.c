@@ -1,0 +1,153 @@
+/* The FMI 3.0 face: life cycle and co-simulation. */
+#include "fmi3Functions.h"
+
+#define FMI_STATUS fmi3Status
+#include "face.h"
+
+static void log_message(const Instance *instance, Status status, const char *category, const char *message) {
+    const fmi3LogMessageCallback logger = (fmi3LogMessageCallback)instance->callback;
+    logger(instance->environment, (fmi3Status)status, category, message);
+}
+
+static Instance *instantiate(Kind kind, fmi3String name, fmi3String token, fmi3Boolean logging,
+                             fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger) {
+    const Instance draft = {
+        .kind = kind, .log = log_message, .callback = (void (*)(void))logger, .environment = environment};
+    return instance_new(&draft, name, token, logging);
+}
+
+const char *fmi3GetVersion(void) {
+    return fmi3Version;
+}
+
+fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean on, size_t count, const fmi3String categories[]) {
+    INSTANCE(instance, MODES_ANY);
+    return (fmi3Status)instance_set_logging(I, on, count, categories);
+}
+
+fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible,
+                                          fmi3Boolean logging, fmi3InstanceEnvironment environment,
+                                          fmi3LogMessageCallback logger) {
+    UNUSED(resources);
+    UNUSED(visible);
+    return instantiate(MODEL_EXCHANGE, name, token, logging, environment, logger);
+}
+
+fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible,
+                                         fmi3Boolean logging, fmi3Boolean event_mode, fmi3Boolean early_return,
+                                         const fmi3ValueReference intermediate[], size_t intermediates,
+                                         fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger,
+                                         fmi3IntermediateUpdateCallback update) {
+    UNUSED(resources);
+    UNUSED(visible);
+    UNUSED(early_return);
+    UNUSED(intermediate);
+    UNUSED(intermediates);
+    UNUSED(update);
+    if (event_mode) {
+        if (logger) logger(environment, fmi3Error, "logStatusError", "co-simulation has no event mode");
+        return NULL;
+    }
+    return instantiate(CO_SIMULATION, name, token, logging, environment, logger);
+}
+
+fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token, fmi3String resources,
+                                               fmi3Boolean visible, fmi3Boolean logging,
+                                               fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger,
+                                               fmi3ClockUpdateCallback update, fmi3LockPreemptionCallback lock,
+                                               fmi3UnlockPreemptionCallback unlock) {
+    UNUSED(name);
+    UNUSED(token);
+    UNUSED(resources);
+    UNUSED(visible);
+    UNUSED(logging);
+    UNUSED(update);
+    UNUSED(lock);
+    UNUSED(unlock);
+    if (logger) logger(environment, fmi3Error, "logStatusError", "scheduled execution is not offered");
+    return NULL;
+}
+
+void fmi3FreeInstance(fmi3Instance instance) {
+    instance_free(instance);
+}
+
+fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolerance_defined, fmi3Float64 tolerance,
+                                       fmi3Float64 start, fmi3Boolean stop_defined, fmi3Float64 stop) {
+    UNUSED(tolerance_defined);
+    UNUSED(tolerance);
+    UNUSED(stop_defined);
+    UNUSED(stop);
+    INSTANCE(instance, MODE_INSTANTIATED);
+    return (fmi3Status)instance_enter_initialization(I, start);
+}
+
+fmi3Status fmi3ExitInitializationMode(fmi3Instance instance) {
+    INSTANCE(instance, MODE_INITIALIZATION);
+    instance_refresh(I);
+    I->mode = I->kind == MODEL_EXCHANGE ? MODE_EVENT : MODE_STEP;
+    return fmi3OK;
+}
+
+fmi3Status fmi3Terminate(fmi3Instance instance) {
+    INSTANCE(instance, MODES_RUN);
+    I->mode = MODE_TERMINATED;
+    return fmi3OK;
+}
+
+fmi3Status fmi3Reset(fmi3Instance instance) {
+    INSTANCE(instance, MODES_ANY);
+    instance_reset(I);
+    return fmi3OK;
+}
+
+fmi3Status fmi3EnterConfigurationMode(fmi3Instance instance) {
+    INSTANCE(instance, MODE_INSTANTIATED);
+    I->mode = MODE_CONFIGURATION;
+    return fmi3OK;
+}
+
+fmi3Status fmi3ExitConfigurationMode(fmi3Instance instance) {
+    INSTANCE(instance, MODE_CONFIGURATION);
+    I->mode = MODE_INSTANTIATED;
+    return fmi3OK;
+}
+
+fmi3Status fmi3EnterStepMode(fmi3Instance instance) {
+    INSTANCE(instance, MODES_ANY);
+    REFUSE("co-simulation has no event mode");
+}
+
+fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 start, fmi3Float64 step, fmi3Boolean no_state_before,
+                      fmi3Boolean *event_needed, fmi3Boolean *terminate, fmi3Boolean *early_return, fmi3Float64 *last_time) {
+    UNUSED(no_state_before);
+    INSTANCE(instance, MODE_STEP);
+    REQUIRE(event_needed);
+    REQUIRE(terminate);
+    REQUIRE(early_return);
+    REQUIRE(last_time);
+    const Status status = instance_step(I, start, step);
+    *event_needed = fmi3False;
+    *terminate = fmi3False;
+    *early_return = fmi3False;
+    *last_time = I->time;
+    return (fmi3Status)status;
+}
+
+fmi3Status fmi3GetOutputDerivatives(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
+                                    const fmi3Int32 orders[], fmi3Float64 values[], size_t size) {
+    UNUSED(references);
+    UNUSED(count);
+    UNUSED(orders);
+    UNUSED(values);
+    UNUSED(size);
+    INSTANCE(instance, MODES_ANY);
+    REFUSE("outputs have no derivatives to give");
+}
+
+fmi3Status fmi3ActivateModelPartition(fmi3Instance instance, fmi3ValueReference clock, fmi3Float64 time) {
+    UNUSED(clock);
+    UNUSED(time);
+    INSTANCE(instance, MODES_ANY);
+    REFUSE("scheduled execution is not offered");
+}

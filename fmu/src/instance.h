@@ -1,0 +1,114 @@
+/* One instance of the FMU, as both versions of FMI see it: robots, mode, variables by reference, log. No FMI types. */
+#ifndef LAGLAB_INSTANCE_H
+#define LAGLAB_INSTANCE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "robot.h"
+
+/* The numbers are those of fmi2Status and fmi3Status. DISCARD: a value was refused, nothing has changed. */
+typedef enum { STATUS_OK, STATUS_WARNING, STATUS_DISCARD, STATUS_ERROR } Status;
+
+typedef enum { MODEL_EXCHANGE, CO_SIMULATION } Kind;
+
+typedef enum {
+    MODE_INSTANTIATED = 1,
+    MODE_CONFIGURATION = 2,
+    MODE_INITIALIZATION = 4,
+    MODE_EVENT = 8,
+    MODE_CONTINUOUS_TIME = 16,
+    MODE_STEP = 32,
+    MODE_TERMINATED = 64
+} Mode;
+
+enum {
+    MODES_START = MODE_INSTANTIATED | MODE_INITIALIZATION,
+    MODES_RUN = MODE_EVENT | MODE_CONTINUOUS_TIME | MODE_STEP,
+    MODES_ANY = MODES_START | MODES_RUN | MODE_CONFIGURATION | MODE_TERMINATED
+};
+
+/* Room for one logged line. */
+enum { MESSAGE_SIZE = 512 };
+
+enum { LOG_EVENTS = 1, LOG_DISCARD = 2, LOG_ERROR = 4 };
+
+typedef enum { TYPE_FLOAT64, TYPE_INT32, TYPE_INT64, TYPE_UINT64, TYPE_BOOLEAN } Type;
+
+typedef enum { ROLE_TIME, ROLE_ROBOTS, ROLE_PARAMETER, ROLE_INPUT, ROLE_OUTPUT, ROLE_DERIVATIVE } Role;
+
+/* A line of the table of variables; its value reference is its index. */
+typedef struct {
+    const char *name;
+    Type type;
+    Role role;
+    size_t offset; /* in Robot */
+    double minimum, maximum, start;
+} Variable;
+
+typedef struct Instance Instance;
+typedef void (*LogFunction)(const Instance *, Status, const char *category, const char *message);
+
+struct Instance {
+    uint64_t zero; /* an importer that takes the first word for a pointer to free finds none */
+    Kind kind;
+    Mode mode;
+    LogFunction log;
+    void (*callback)(void); /* the importer's logger, in the version's own type */
+    void *environment;
+    char *name;
+    unsigned logged; /* LOG_ categories */
+    bool stale;      /* what follows from inputs, parameters and states is not yet computed */
+    size_t robots;
+    Robot *robot;
+    double start_time, time;
+};
+
+/* NULL when the token is not this model's or memory runs out; says so through `log`. */
+Instance *instance_new(const Instance *draft, const char *name, const char *token, bool debug);
+void instance_free(Instance *instance);
+
+/* Sends one line to the importer if its category is on, and hands `status` back. */
+Status instance_log(const Instance *instance, Status status, const char *format, ...);
+Status instance_set_logging(Instance *instance, bool on, size_t count, const char *const categories[]);
+
+/* Whether the call is legal in the present mode; logs when not. */
+bool instance_allows(const Instance *instance, int modes, const char *call);
+
+Status instance_configure(Instance *instance, size_t robots);
+Status instance_enter_initialization(Instance *instance, double start_time);
+void instance_reset(Instance *instance);
+Status instance_step(Instance *instance, double start, double step);
+
+/* Brings every value that follows from others up to date. */
+void instance_refresh(Instance *instance);
+
+/* The variable, or NULL and one logged line when the reference is not one of that type. */
+const Variable *instance_variable(const Instance *instance, Type type, uint32_t reference, const char *call);
+bool instance_has_type(uint32_t reference, Type type);
+/* Whether `size` values is what the variables hold; logs when not. */
+Status instance_check_size(const Instance *instance, Type type, const uint32_t references[], size_t count, size_t size,
+                           const char *call);
+size_t instance_size(const Instance *instance, const Variable *variable);
+
+Status instance_get_floats(Instance *instance, const uint32_t references[], size_t count, double values[], size_t size,
+                           const char *call);
+Status instance_set_floats(Instance *instance, const uint32_t references[], size_t count, const double values[],
+                           size_t size, const char *call);
+/* Booleans, integers and enumerations. `robot` counts from 0. */
+int64_t instance_integer(const Instance *instance, const Variable *variable, size_t robot);
+Status instance_check_integer(const Instance *instance, const Variable *variable, int64_t value, const char *call);
+Status instance_set_integer(Instance *instance, const Variable *variable, size_t robot, int64_t value);
+
+/* Model exchange: continuous states are all x, then all y, then all theta. */
+void instance_get_states(const Instance *instance, double states[]);
+Status instance_set_states(Instance *instance, const double states[]);
+void instance_get_derivatives(Instance *instance, double derivatives[]);
+Status instance_set_time(Instance *instance, double time);
+void instance_take_samples(Instance *instance);
+double instance_next_sample(const Instance *instance);
+
+enum { STATES = 3 };
+
+#endif

@@ -1,0 +1,156 @@
+/* Variables by value reference. */
+#include "instance.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "variables.h"
+
+bool instance_has_type(uint32_t reference, Type type) {
+    return reference < VARIABLES && VARIABLE[reference].type == type;
+}
+
+const Variable *instance_variable(const Instance *instance, Type type, uint32_t reference, const char *call) {
+    if (instance_has_type(reference, type)) {
+        return &VARIABLE[reference];
+    }
+    instance_log(instance, STATUS_ERROR, "%s: value reference %u (%s) is not a variable of this type", call,
+                 (unsigned)reference, reference < VARIABLES ? VARIABLE[reference].name : "unknown");
+    return NULL;
+}
+
+size_t instance_size(const Instance *instance, const Variable *variable) {
+    return variable->role == ROLE_TIME || variable->role == ROLE_ROBOTS ? 1 : instance->robots;
+}
+
+static char *slot(const Robot *robot, const Variable *variable) {
+    return (char *)robot + variable->offset;
+}
+
+Status instance_check_size(const Instance *instance, Type type, const uint32_t references[], size_t count, size_t size,
+                           const char *call) {
+    size_t expected = 0;
+    for (size_t i = 0; i < count; i++) {
+        const Variable *variable = instance_variable(instance, type, references[i], call);
+        if (!variable) {
+            return STATUS_ERROR;
+        }
+        expected += instance_size(instance, variable);
+    }
+    if (size != expected) {
+        return instance_log(instance, STATUS_ERROR, "%s: %zu values given for variables that hold %zu", call, size, expected);
+    }
+    return STATUS_OK;
+}
+
+static double *copy_floats(const Instance *instance, const Variable *variable, double *values) {
+    if (variable->role == ROLE_TIME) {
+        *values = instance->time;
+        return values + 1;
+    }
+    const char *source = slot(instance->robot, variable);
+    for (size_t k = 0; k < instance->robots; k++, source += sizeof(Robot)) {
+        memcpy(values++, source, sizeof *values);
+    }
+    return values;
+}
+
+Status instance_get_floats(Instance *instance, const uint32_t references[], size_t count, double values[], size_t size,
+                           const char *call) {
+    const Status status = instance_check_size(instance, TYPE_FLOAT64, references, count, size, call);
+    if (status != STATUS_OK) {
+        return status;
+    }
+    instance_refresh(instance);
+    for (size_t i = 0; i < count; i++) {
+        const Variable *variable = &VARIABLE[references[i]];
+        for (size_t k = 0; variable->role == ROLE_DERIVATIVE && k < instance->robots; k++) {
+            robot_derivatives(&instance->robot[k]);
+        }
+        values = copy_floats(instance, variable, values);
+    }
+    return STATUS_OK;
+}
+
+static Status check_settable(const Instance *instance, const Variable *variable, const char *call) {
+    const int modes = variable->role == ROLE_PARAMETER ? MODES_START
+                      : variable->role == ROLE_INPUT   ? MODES_START | MODES_RUN
+                      : variable->role == ROLE_ROBOTS  ? MODE_CONFIGURATION
+                                                       : 0;
+    if (!modes) {
+        return instance_log(instance, STATUS_ERROR, "%s: %s cannot be set", call, variable->name);
+    }
+    if (!(instance->mode & modes)) {
+        return instance_log(instance, STATUS_ERROR, "%s: %s cannot be set now, only %s", call, variable->name,
+                            variable->role == ROLE_PARAMETER ? "before the simulation starts"
+                            : variable->role == ROLE_INPUT   ? "before the simulation ends"
+                                                             : "in configuration mode");
+    }
+    return STATUS_OK;
+}
+
+static Status check_range(const Instance *instance, const Variable *variable, double value, const char *call) {
+    if (isfinite(value) && value >= variable->minimum && value <= variable->maximum) {
+        return STATUS_OK;
+    }
+    return instance_log(instance, STATUS_DISCARD, "%s: %s = %g refused: it must be finite and in [%g, %g]", call,
+                        variable->name, value, variable->minimum, variable->maximum);
+}
+
+static Status check_floats(const Instance *instance, const uint32_t references[], size_t count, const double values[],
+                           const char *call) {
+    for (size_t i = 0; i < count; i++) {
+        const Variable *variable = &VARIABLE[references[i]];
+        Status status = check_settable(instance, variable, call);
+        for (size_t k = 0; status == STATUS_OK && k < instance_size(instance, variable); k++) {
+            status = check_range(instance, variable, *values++, call);
+        }
+        if (status != STATUS_OK) {
+            return status;
+        }
+    }
+    return STATUS_OK;
+}
+
+Status instance_set_floats(Instance *instance, const uint32_t references[], size_t count, const double values[],
+                           size_t size, const char *call) {
+    Status status = instance_check_size(instance, TYPE_FLOAT64, references, count, size, call);
+    if (status == STATUS_OK) {
+        status = check_floats(instance, references, count, values, call);
+    }
+    if (status != STATUS_OK) {
+        return status;
+    }
+    for (size_t i = 0; i < count; i++) {
+        char *target = slot(instance->robot, &VARIABLE[references[i]]);
+        for (size_t k = 0; k < instance->robots; k++, target += sizeof(Robot)) {
+            memcpy(target, values++, sizeof *values);
+        }
+    }
+    instance->stale = true;
+    return STATUS_OK;
+}
+
+int64_t instance_integer(const Instance *instance, const Variable *variable, size_t robot) {
+    if (variable->role == ROLE_ROBOTS) {
+        return (int64_t)instance->robots;
+    }
+    int64_t value;
+    memcpy(&value, slot(&instance->robot[robot], variable), sizeof value);
+    return value;
+}
+
+Status instance_check_integer(const Instance *instance, const Variable *variable, int64_t value, const char *call) {
+    const Status status = check_settable(instance, variable, call);
+    return status == STATUS_OK ? check_range(instance, variable, (double)value, call) : status;
+}
+
+Status instance_set_integer(Instance *instance, const Variable *variable, size_t robot, int64_t value) {
+    if (variable->role == ROLE_ROBOTS) {
+        return instance_configure(instance, (size_t)value);
+    }
+    memcpy(slot(&instance->robot[robot], variable), &value, sizeof value);
+    instance->stale = true;
+    return STATUS_OK;
+}
+

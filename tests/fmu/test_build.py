@@ -1,0 +1,72 @@
+"""What a build makes."""
+
+import hashlib
+import zipfile
+from pathlib import Path
+
+import pytest
+from fmpy import read_model_description
+from fmpy.validation import validate_fmu
+
+from laglab_fmu import BuildError, CompilerNotFoundError, build_fmus
+from laglab_fmu import build as build_module
+from laglab_fmu import compiler as compiler_module
+
+
+@pytest.mark.parametrize("name", ["Robot2", "Robot3"])
+def test_fmpy_finds_no_problem(fmus: dict[str, Path], name: str) -> None:
+    assert validate_fmu(str(fmus[name])) == []
+
+
+def test_twice_the_same_bytes(fmus: dict[str, Path], tmp_path: Path) -> None:
+    for path in build_fmus(tmp_path / "again"):
+        assert (
+            hashlib.sha256(path.read_bytes()).digest()
+            == hashlib.sha256(fmus[path.stem].read_bytes()).digest()
+        )
+
+
+def test_the_library_asks_for_libm(fmus: dict[str, Path]) -> None:
+    with zipfile.ZipFile(fmus["Robot3"]) as archive:
+        binary = next(name for name in archive.namelist() if name.startswith("binaries/"))
+        if binary.endswith(".so"):
+            assert b"libm.so.6" in archive.read(binary)
+
+
+def test_the_headers_licence_is_inside(fmus: dict[str, Path]) -> None:
+    for path in fmus.values():
+        with zipfile.ZipFile(path) as archive:
+            assert b"2-Clause BSD" in archive.read("documentation/licenses/fmi-headers.txt")
+
+
+def test_both_versions_tell_the_same_of_every_variable(fmus: dict[str, Path]) -> None:
+    two, three = (read_model_description(str(fmus[name])) for name in ("Robot2", "Robot3"))
+
+    def table(model: object) -> list[tuple[object, ...]]:
+        return [
+            (v.name, v.valueReference, v.causality, v.variability, v.start, v.min, v.max, v.nominal)
+            for v in model.modelVariables  # type: ignore[attr-defined]
+            if v.name != "time"
+        ]
+
+    assert table(two) == table(three)
+
+
+def test_without_any_compiler_it_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setattr(compiler_module, "find_spec", lambda _: None)
+    with pytest.raises(CompilerNotFoundError, match="pip install ziglang"):
+        build_fmus(tmp_path)
+
+
+def test_a_failing_compiler_is_quoted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    source = tmp_path / "src"
+    source.mkdir()
+    (source / "robot.c").write_text("int broken(void) { return undeclared; }\n")
+    monkeypatch.setattr(build_module, "source_directory", lambda: source)
+    with pytest.raises(BuildError, match="undeclared"):
+        build_fmus(tmp_path / "out")
+    assert not (tmp_path / "out").exists()
