@@ -77,7 +77,7 @@ class DelayedEkf(Generic[W]):
         tick = state.tick + 1
         window = state.window.push(u, self.windows.over(u))
         predicted = DelayedState(tick, state.filtered, window, self.windows)
-        return self._advance(predicted, tick - self.memory, z=None)
+        return self._advance(predicted, tick - self.memory, None, {})
 
     def correct(
         self,
@@ -87,23 +87,40 @@ class DelayedEkf(Generic[W]):
     ) -> DelayedState[W]:
         """Roll back to the oldest news, replay from there, then go on to the newest measurement."""
         oldest, newest = _span(state.filtered)
+        known = {j + 1: u for j, u in inputs if oldest <= j < state.tick}
         late = {s: z for s, z in reversed(measurements) if oldest <= s <= newest}
-        known = {j + 1: u for j, u in inputs if oldest <= j}
-        if late or known:
-            state = self._revise(state, late, known)
+        late_known = {tick: u for tick, u in known.items() if tick <= newest}
+        if late or late_known:
+            state = self._revise(state, late, late_known)
         for s, z in sorted(measurements, key=_sampled):
-            state = self._advance(state, s, z)
-        return state
+            state = self._advance(state, s, z, known)
+        return self._put_right(state, known)
 
-    def _advance(self, state: DelayedState[W], s: int, z: Vector | None) -> DelayedState[W]:
+    def _advance(
+        self, state: DelayedState[W], s: int, z: Vector | None, known: Mapping[int, Vector]
+    ) -> DelayedState[W]:
         """Bring the EKF up to tick s > its own, and correct it there."""
         filtered, window = state.filtered, state.window
-        if filtered.newest.tick >= s:
+        tick = filtered.newest.tick
+        if tick >= s:
             return state
-        while filtered.newest.tick < s:
+        while tick < s:
             u, window = window.pop()
-            filtered = self._extend(filtered, u, z if filtered.newest.tick + 1 == s else None)
+            tick += 1
+            filtered = self._extend(filtered, known.get(tick, u), z if tick == s else None)
         return DelayedState(state.tick, filtered, window, self.windows)
+
+    def _put_right(self, state: DelayedState[W], known: Mapping[int, Vector]) -> DelayedState[W]:
+        """The window with those of its inputs that were wrong put right; `known` by the tick that
+        each led to."""
+        newest = state.filtered.newest.tick
+        if all(tick <= newest for tick in known):
+            return state
+        window = state.window.emptied()
+        for tick, u in enumerate(state.window, start=newest + 1):
+            right = known.get(tick, u)
+            window = window.push(right, self.windows.over(right))
+        return DelayedState(state.tick, state.filtered, window, self.windows)
 
     def _extend(self, filtered: Log[Filtered], u: Vector, z: Vector | None) -> Log[Filtered]:
         tick, *_, posterior = filtered.newest
@@ -127,20 +144,7 @@ class DelayedEkf(Generic[W]):
                 filtered = Log(self._corrected(past.tick, u, past.prior, z), older, 1)
             else:
                 filtered = self._extend(filtered, u, z)
-        window = self._with_inputs(state.window, known, newest=state.filtered.newest.tick)
-        return DelayedState(state.tick, filtered or state.filtered, window, self.windows)
-
-    def _with_inputs(
-        self, window: SlidingProduct[Vector, W], known: Mapping[int, Vector], newest: int
-    ) -> SlidingProduct[Vector, W]:
-        """The window after tick `newest`, with those of its inputs that were wrong put right."""
-        if not known or max(known) <= newest:
-            return window
-        right = window.emptied()
-        for tick, u in enumerate(window, start=newest + 1):
-            u = known.get(tick, u)
-            right = right.push(u, self.windows.over(u))
-        return right
+        return DelayedState(state.tick, filtered or state.filtered, state.window, self.windows)
 
 
 def _sampled(measured: Measured) -> int:

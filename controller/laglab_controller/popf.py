@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from laglab_controller.estimator import Applied, Measured
+from laglab_controller.history import History
 from laglab_controller.kalman import Belief, gain
-from laglab_controller.log import Log, append, newest_first
 from laglab_controller.model import Matrix, Model, Vector, identity, symmetric
 from laglab_controller.sliding import SlidingProduct
 
@@ -19,17 +19,6 @@ class Step(NamedTuple):
     factor: Matrix
 
 
-class Past(NamedTuple):
-    """The steps that a measurement may still refer to, split at the newest measurement's tick."""
-
-    window: SlidingProduct[Step, Matrix]
-    """The steps after that tick; their product is M* but for that tick's own factor."""
-    since: int
-    """The oldest tick in the window."""
-    older: Log[Step] | None
-    """The steps before."""
-
-
 class PopfState(NamedTuple):
     """The estimate x (d,) and covariance P (d, d) at `tick`, and the past that (28) looks at."""
 
@@ -40,14 +29,19 @@ class PopfState(NamedTuple):
     """x^-_k and P^-_k."""
     left: Matrix
     """The product of I - K_k H_k over the corrections made so far at this tick."""
-    past: Past
+    past: History[Step, Matrix]
+    """Split at the newest measurement used: M* is the product of its window, but for that tick's
+    own factor."""
     used: int
     """Bit i is set when z_{k-i} has been used."""
 
 
 @dataclass(frozen=True)
 class Popf:
-    """The paper's filter with (28) as (11) derives it; `innovation_at_k` prints it as (28) does.
+    """The paper's filter with (28) as (11) derives it.
+
+    `innovation_at_k` takes h(x^-_k) for h(x^-_s), and `covariance_at_k` H_k for H_s, as (28) prints
+    them: kept only to show what that costs.
 
     A measurement may come at any time, in any order, up to `memory` ticks late: M* is taken from
     its own tick on. The derivation takes the errors of measurements that are on their way at the
@@ -56,23 +50,24 @@ class Popf:
 
     model: Model
     innovation_at_k: bool = False
+    covariance_at_k: bool = False
     memory: int = 1024
 
     def start(self, x: Vector, P: Matrix) -> PopfState:
         """The prior of tick 0."""
         I = identity(len(x))  # noqa: E741
         window: SlidingProduct[Step, Matrix] = SlidingProduct(_compose, I)
-        return PopfState(0, x, P, Belief(x, P), I, Past(window, since=0, older=None), used=0)
+        past = History(window, since=0, older=None, memory=self.memory)
+        return PopfState(0, x, P, Belief(x, P), I, past, used=0)
 
     def predict(self, state: PopfState, u: Vector) -> PopfState:
         """(27), and one more factor for (21)."""
-        tick, x, P, prior, left, (window, since, older), used = state
-        step = Step(tick, prior, self.model.A(x, u).dot(left))
-        past = Past(window.push(step, step.factor), since, older)
+        tick, x, P, prior, left, past, used = state
+        factor = self.model.A(x, u).dot(left)
+        past = past.push(tick, Step(tick, prior, factor), factor)
         used = used << 1 & (1 << self.memory) - 1
         prior = Belief(*self.model.predict(x, P, u))
-        past = self._slide(past, to=tick + 1 - self.memory)
-        return PopfState(tick + 1, *prior, prior, window.identity, past, used)
+        return PopfState(tick + 1, *prior, prior, identity(len(x)), past, used)
 
     def correct(
         self, state: PopfState, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
@@ -86,33 +81,24 @@ class Popf:
 
     def _correct(self, state: PopfState, s: int, z: Vector) -> PopfState:
         tick, x, P, prior, left, past, used = state
-        past = self._slide(past, to=min(s, tick - 1))
+        past = past.split(at=min(s, tick - 1))
         (x_s, P_s), M = (prior, left) if s == tick else _prior_and_M(past, s, left)
         model, H = self.model, self.model.H(x_s)
         PHt = P_s.dot(H.T)
         K = gain(M.dot(PHt), H.dot(PHt) + model.measurement_noise(x_s))  # (24)
         expected = model.h(prior.x if self.innovation_at_k else x_s)
         x = x + K.dot(model.innovation(z, expected))  # (11)
-        P = symmetric(P - K.dot(PHt.T).dot(M.T))  # (23)
-        left = left - K.dot(model.H(prior.x)).dot(left)
+        H_k = model.H(prior.x)
+        seen = H_k.dot(P_s) if self.covariance_at_k else PHt.T
+        P = symmetric(P - K.dot(seen).dot(M.T))  # (23)
+        left = left - K.dot(H_k).dot(left)
         return PopfState(tick, x, P, prior, left, past, used | 1 << tick - s)
 
-    def _slide(self, past: Past, to: int) -> Past:
-        """Leave in the window only the ticks after `to`."""
-        window, since, older = past
-        if since > to:
-            return past
-        while since <= to:
-            step, window = window.pop()
-            older = append(older, step, self.memory)
-            since += 1
-        return Past(window, since, older)
 
-
-def _prior_and_M(past: Past, s: int, left: Matrix) -> tuple[Belief, Matrix]:
+def _prior_and_M(past: History[Step, Matrix], s: int, left: Matrix) -> tuple[Belief, Matrix]:
     """The prior of tick s, and M* (21) from there to this tick and its corrections so far."""
     M = left.dot(past.window.product)
-    for step in newest_first(past.older):
+    for step in past.backwards():
         M = M.dot(step.factor)
         if step.tick == s:
             return step.prior, M
