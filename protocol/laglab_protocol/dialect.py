@@ -5,7 +5,6 @@ import io
 import shutil
 import tempfile
 from argparse import Namespace
-from importlib.resources import files
 from pathlib import Path
 
 from laglab_protocol.errors import DialectError
@@ -18,6 +17,13 @@ def dialect_path() -> Path:
     package = Path(__file__).parent
     candidates = (package.parent / "laglab.xml", package / "laglab.xml")
     return next(path for path in candidates if path.is_file())
+
+
+def carried_dialects() -> Path:
+    """The folder of the dialects that pymavlink carries: common.xml and others."""
+    import pymavlink.dialects.v20 as dialects
+
+    return Path(dialects.__path__[0])
 
 
 def offer_to_pymavlink() -> None:
@@ -57,11 +63,17 @@ def generate(xml: Path, language: str, output: Path) -> None:
             raise DialectError(f"{xml}: mavgen fails: {error}\n{said.getvalue()}") from error
     if done is False:
         raise DialectError(f"{xml}: mavgen refuses it:\n{said.getvalue()}")
+    if language == "WLua":
+        _mend_dissector(output)
+
+
+def _mend_dissector(output: Path) -> None:
+    """mavgen calls a method that Wireshark lacks; its le_float reads eight bytes too."""
+    output.write_text(output.read_text().replace(":le_double()", ":le_float()"))
 
 
 def _beside_its_includes(xml: Path, folder: Path) -> Path:
     """Copy `xml` into `folder` with the dialects it may include: mavgen looks for them there."""
-    for carried in (files("pymavlink") / "dialects" / "v20").iterdir():
-        if carried.name.endswith(".xml"):
-            (folder / carried.name).write_bytes(carried.read_bytes())
+    for carried in carried_dialects().glob("*.xml"):
+        shutil.copy(carried, folder)
     return Path(shutil.copy(xml, folder / xml.name))

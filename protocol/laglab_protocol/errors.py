@@ -31,3 +31,11 @@ class FarEndGoneError(EndpointError):
 
 class FarEndStalledError(EndpointError):
     """The far end no longer reads, and what waits for it fills the queue."""
+
+
+class KeyFileError(ProtocolError):
+    """The signing key, or the timestamps kept with it, cannot be used."""
+
+
+class UnsignedLinkError(ProtocolError):
+    """An endpoint that strangers can reach, and no key."""

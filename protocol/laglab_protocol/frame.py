@@ -10,7 +10,7 @@ definition has of its own (https://mavlink.io/en/guide/serialization.html).
 
 import struct
 from enum import Enum, auto
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, final
 
 from fastcrc import crc16
 
@@ -26,10 +26,16 @@ SIGNED = 0x01
 
 _new_tuple: Any = tuple.__new__
 _crc = crc16.mcrf4xx
-_pack_header = struct.Struct("<BBBBBBB3s").pack
+_SHORTEST_BODY = 9
+"""From the third byte of a frame to the end of a payload of one byte."""
+_OPENINGS = {
+    length + 8: (bytes([START, length]), _crc(bytes([length]))) for length in range(1, 256)
+}
+"""By the length of that body: the first two bytes of the frame, and the CRC of the second."""
 _unpack_header = struct.Struct("<xBBxBBBI").unpack_from  # one byte beyond the id: masked off
 
 
+@final
 class Frame(NamedTuple):
     """A message as it travelled. `raw` is the whole frame, its signature included."""
 
@@ -55,8 +61,10 @@ class Refusal(Enum):
     """A signature is required and there is none."""
     BAD_SIGNATURE = auto()
     """Not signed with our key."""
+    NO_KEY = auto()
+    """Signed, and we have no key to tell by whom."""
     REPLAYED = auto()
-    """Signed with our key, but no later than what this stream has already said."""
+    """Signed with our key, but no later than what this stream has said, or a minute old."""
 
 
 def encode(message: Message, system: int, component: int, sequence: int, flags: int = 0) -> bytes:
@@ -65,16 +73,17 @@ def encode(message: Message, system: int, component: int, sequence: int, flags: 
     Raises DialectError for a class that is no message, struct.error for a value out of range.
     """
     layout = LAYOUT_OF_TYPE.get(type(message)) or layout_of(message)
-    payload = layout.pack(*message).rstrip(b"\0") or b"\0"
-    header = _pack_header(
-        START, len(payload), flags, 0, sequence, system, component, layout.id_bytes
-    )
-    crc = _crc(header[1:] + payload + layout.crc_extra)
-    return header + payload + crc.to_bytes(2, "little")
+    body = layout.pack(flags, 0, sequence, system, component, layout.id_bytes, *message)
+    body = body.rstrip(b"\0").ljust(_SHORTEST_BODY, b"\0")
+    opening, crc_of_length = _OPENINGS[len(body)]
+    crc = _crc(layout.crc_extra, _crc(body, crc_of_length))
+    return opening + body + crc.to_bytes(2, "little")
 
 
-def decode(buffer: bytes, start: int) -> Frame | Refusal:
+def decode(buffer: bytes, start: int, signed_too: bool = True) -> Frame | Refusal:
     """The frame whose start byte is at `start`, its CRC verified, its signature not.
+
+    Unless `signed_too`, a signed one is refused: who has no key cannot tell whose it is.
 
     Payloads shorter than the message are filled with zeros, longer ones (from a later version of
     the dialect) cut: both as MAVLink 2 demands.
@@ -87,18 +96,19 @@ def decode(buffer: bytes, start: int) -> Frame | Refusal:
     layout = LAYOUT_OF_ID.get(number & 0xFFFFFF)
     if layout is None:
         return Refusal.UNKNOWN
-    if flags & ~SIGNED:
-        return Refusal.INCOMPATIBLE
+    if flags and not (flags == SIGNED and signed_too):
+        return Refusal.NO_KEY if flags == SIGNED else Refusal.INCOMPATIBLE
     end = body + length
     stop = end + (CRC_SIZE + SIGNATURE_SIZE if flags else CRC_SIZE)
     if size < stop:
         return Refusal.INCOMPLETE
     if _crc(buffer[start + 1 : end] + layout.crc_extra) != buffer[end] | buffer[end + 1] << 8:
         return Refusal.BAD_CRC
-    payload = buffer[body:end]
-    if length != layout.size:
-        payload = payload.ljust(layout.size, b"\0")[: layout.size]
+    if length >= layout.size:
+        fields = layout.unpack(buffer, body)
+    else:
+        fields = layout.unpack(buffer[body:end].ljust(layout.size, b"\0"), 0)
     # What NamedTuple._make does, without its check of the count: the struct has fixed it.
-    message = _new_tuple(layout.type, layout.unpack(payload))
+    message = _new_tuple(layout.type, fields)
     frame: Frame = _new_tuple(Frame, (message, system, component, sequence, buffer[start:stop]))
     return frame

@@ -13,8 +13,12 @@ from laglab_protocol.messages import Message, message_type
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """One message: `pack(*fields)` gives the payload untruncated, `unpack` reads `size` bytes into
-    the fields."""
+    """One message, and how its fields lie on the wire.
+
+    `pack(flags, compatibility, sequence, system, component, id_bytes, *fields)` gives the frame
+    from its third byte to the end of its payload, untruncated: one struct is faster than two.
+    `unpack(buffer, start)` reads the fields from the `size` bytes of a payload.
+    """
 
     id: int
     name: str
@@ -23,13 +27,14 @@ class Layout:
     crc_extra: bytes
     id_bytes: bytes
     pack: Callable[..., bytes]
-    unpack: Callable[[bytes], Iterable[Any]]
+    unpack: Callable[[bytes, int], Iterable[Any]]
 
 
 def _layout(number: int) -> Layout:
     generated = dialect.mavlink_map[number]
     kind = message_type(generated.msgname)
     fields: struct.Struct = generated.unpacker
+    whole = struct.Struct("<BBBBB3s" + fields.format.removeprefix("<"))
     lengths: list[int] = generated.array_lengths  # in wire order; 0 for a scalar
     return Layout(
         id=number,
@@ -38,23 +43,25 @@ def _layout(number: int) -> Layout:
         size=fields.size,
         crc_extra=bytes([generated.crc_extra]),
         id_bytes=number.to_bytes(3, "little"),
-        pack=partial(_pack_arrays, fields) if any(lengths) else fields.pack,
-        unpack=partial(_unpack_arrays, fields, lengths) if any(lengths) else fields.unpack,
+        pack=partial(_pack_arrays, whole) if any(lengths) else whole.pack,
+        unpack=partial(_unpack_arrays, fields, lengths) if any(lengths) else fields.unpack_from,
     )
 
 
-def _pack_arrays(fields: struct.Struct, *values: Any) -> bytes:
+def _pack_arrays(whole: struct.Struct, *values: Any) -> bytes:
     flat: list[Any] = []
     for value in values:
         if isinstance(value, tuple | list):
             flat.extend(value)
         else:
             flat.append(value)
-    return fields.pack(*flat)
+    return whole.pack(*flat)
 
 
-def _unpack_arrays(fields: struct.Struct, lengths: list[int], payload: bytes) -> Iterator[Any]:
-    return _grouped(iter(fields.unpack(payload)), lengths)
+def _unpack_arrays(
+    fields: struct.Struct, lengths: list[int], buffer: bytes, start: int
+) -> Iterator[Any]:
+    return _grouped(iter(fields.unpack_from(buffer, start)), lengths)
 
 
 def _grouped(values: Iterator[Any], lengths: list[int]) -> Iterator[Any]:

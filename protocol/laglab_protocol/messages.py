@@ -12,9 +12,10 @@ from typing import Any, NamedTuple
 
 from laglab_protocol.errors import DialectError
 from laglab_protocol.generated import laglab as dialect
+from laglab_protocol.standard import STANDARD
 
 Message = tuple[Any, ...]
-"""Any message: one of the classes below, or one that `message_type` returns."""
+"""Any message: a class of this module or of `standard`, or one that `message_type` returns."""
 
 NO_COMMAND = -1
 """Measurement.command_tick when no command had come into force."""
@@ -84,24 +85,13 @@ class End(NamedTuple):
     reason: int
 
 
-class Heartbeat(NamedTuple):
-    """Anybody, once a second: I am here, and of this kind."""
-
-    custom_mode: int
-    type: int
-    autopilot: int
-    base_mode: int
-    system_status: int
-    mavlink_version: int
-
-
 WRITTEN_OUT: dict[str, type[Message]] = {
     "LAGLAB_TICK": Tick,
     "LAGLAB_MEASUREMENT": Measurement,
     "LAGLAB_COMMAND": Command,
     "LAGLAB_ESTIMATE": Estimate,
     "LAGLAB_END": End,
-    "HEARTBEAT": Heartbeat,
+    **STANDARD,
 }
 
 _IDS: dict[str, int] = {made.msgname: number for number, made in dialect.mavlink_map.items()}

@@ -10,6 +10,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 
 from laglab_protocol.frame import START, Frame, Refusal, decode
+from laglab_protocol.signing import Verifier
 
 Peer = tuple[int, int]
 """(system, component)."""
@@ -32,9 +33,13 @@ class Counters:
 
 
 class Receiver:
-    """Finds the frames in a stream, or in one datagram after another. No I/O."""
+    """Finds the frames in a stream, or in one datagram after another. No I/O.
 
-    def __init__(self) -> None:
+    With a verifier only what it lets pass is delivered; without one, only what is not signed.
+    """
+
+    def __init__(self, verifier: Verifier | None = None) -> None:
+        self._verifier = verifier
         self._rest = b""
         self._frames = 0
         self._noise = 0
@@ -61,13 +66,21 @@ class Receiver:
         """
         buffer = self._rest + data if self._rest else data
         self._rest = b""
+        verifier, expected = self._verifier, self._expected
+        signed_too = verifier is not None
         frames: list[Frame] = []
         position, size = 0, len(buffer)
         while position < size:
-            found = decode(buffer, position) if buffer[position] == START else None
-            if isinstance(found, Frame):
+            found = decode(buffer, position, signed_too) if buffer[position] == START else None
+            if verifier and type(found) is Frame:
+                found = verifier.refuses(found) or found
+            if type(found) is Frame:
                 _, system, component, sequence, raw = found
-                self._follow(system << 8 | component, sequence)
+                peer = system << 8 | component
+                if expected.get(peer) == sequence:
+                    expected[peer] = (sequence + 1) & 0xFF
+                else:
+                    self._out_of_sequence(peer, sequence)
                 frames.append(found)
                 position += len(raw)
             elif found is Refusal.INCOMPLETE:
@@ -100,7 +113,7 @@ class Receiver:
         self._noise += after - position
         return after
 
-    def _follow(self, peer: int, sequence: int) -> None:
+    def _out_of_sequence(self, peer: int, sequence: int) -> None:
         gap = (sequence - self._expected.get(peer, sequence)) & 0xFF
         if gap >= 128:
             self._late[peer] += 1

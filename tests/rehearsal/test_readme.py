@@ -84,3 +84,9 @@ def test_a_bare_clone_installs_and_runs(tmp_path: Path) -> None:
     assert result.returncode == 0, result.stderr
     assert "converged" in result.stdout
     assert (tmp_path / "runs" / "fig6" / "figure.png").exists()
+    installed = tmp_path / ".venv" / "bin" / "laglab"
+    subprocess.run([installed, "fmu", "build", "--out", "built"], cwd=tmp_path, check=True)
+    assert sorted(path.name for path in (tmp_path / "built").iterdir()) == [
+        "Robot2.fmu",
+        "Robot3.fmu",
+    ]

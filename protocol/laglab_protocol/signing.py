@@ -1,0 +1,129 @@
+"""MAVLink 2 signatures: who holds the key may speak, and nothing said is accepted twice.
+
+A signed frame ends with a link id (1 byte), a timestamp (6, in 10 us since 2015) and the first six
+bytes of SHA-256(key, frame so far, link id, timestamp). The streams of a key are told apart by
+(link id, system, component); in each the timestamp only grows
+(https://mavlink.io/en/guide/message_signing.html).
+"""
+
+import struct
+import time
+from collections.abc import Callable
+from hashlib import sha256
+from hmac import compare_digest
+
+from laglab_protocol.frame import SIGNATURE_SIZE, SIGNED, Frame, Refusal
+from laglab_protocol.layout import layout_of
+
+KEY_SIZE = 32
+EPOCH_NS = 1_420_070_400 * 10**9
+"""1 January 2015 UTC in Unix time [ns], where the timestamps start."""
+MINUTE = 60 * 100_000
+"""In timestamps: a stream that we do not know may not start further behind than this."""
+
+_unpack_signature = struct.Struct("<BIH6s").unpack_from
+
+CLOCK_EVERY = 16
+"""Timestamps: in between a signer counts on, for reading the clock costs a third of signing."""
+
+Stream = tuple[int, int, int]
+"""(link id, system, component)."""
+Clock = Callable[[], int]
+
+
+def signing_time() -> int:
+    """Now, as a timestamp: in 10 us since the start of 2015."""
+    return (time.time_ns() - EPOCH_NS) // 10_000
+
+
+class Timestamps:
+    """The last timestamp of each stream, our own included. This one forgets at the end."""
+
+    def __init__(self) -> None:
+        self.last: dict[Stream, int] = {}
+
+    def reserve(self, stream: Stream, timestamp: int) -> int:
+        """Before `timestamp` counts: up to which one may the stream go on without asking again."""
+        del stream
+        return timestamp + MINUTE
+
+    def close(self) -> None:
+        """Nothing more will be said."""
+
+
+class Signer:
+    """Signs the frames of one (system, component)."""
+
+    def __init__(
+        self,
+        key: bytes,
+        stream: Stream,
+        timestamps: Timestamps | None = None,
+        clock: Clock = signing_time,
+    ) -> None:
+        self._keyed = sha256(key)
+        self._stream = stream
+        self._link = stream[0]
+        self._timestamps = timestamps or Timestamps()
+        self._last = self._timestamps.last
+        self._latest = self._last.get(stream, 0)
+        self._reserved = 0
+        self._clock = clock
+
+    def sign(self, frame: bytes) -> bytes:
+        """`frame`, which carries the SIGNED flag, with its signature. No timestamp comes twice."""
+        timestamp = self._latest + 1
+        if timestamp > self._reserved or not timestamp % CLOCK_EVERY:
+            timestamp = self._by_the_clock(timestamp)
+        self._latest = self._last[self._stream] = timestamp
+        stamped = frame + (timestamp << 8 | self._link).to_bytes(7, "little")
+        digest = self._keyed.copy()
+        digest.update(stamped)
+        return stamped + digest.digest()[:6]
+
+    def _by_the_clock(self, least: int) -> int:
+        timestamp = max(least, self._clock())
+        if timestamp > self._reserved:
+            self._reserved = self._timestamps.reserve(self._stream, timestamp)
+        return timestamp
+
+
+class Verifier:
+    """Tells which frames may pass; a frame that may not changes nothing here."""
+
+    def __init__(
+        self,
+        key: bytes,
+        timestamps: Timestamps | None = None,
+        allow_unsigned: frozenset[str] = frozenset(),
+        clock: Clock = signing_time,
+    ) -> None:
+        self._keyed = sha256(key)
+        self._timestamps = timestamps or Timestamps()
+        self._last = self._timestamps.last
+        self._reserved: dict[Stream, int] = {}
+        self._allow_unsigned = allow_unsigned
+        self._clock = clock
+
+    def refuses(self, frame: Frame) -> Refusal | None:
+        """Why `frame` may not pass, None when it may. `allow_unsigned` holds message names."""
+        message, system, component, _, raw = frame
+        if not raw[2] & SIGNED:
+            allowed = layout_of(message).name in self._allow_unsigned
+            return None if allowed else Refusal.UNSIGNED
+        digest = self._keyed.copy()
+        digest.update(raw[:-6])
+        link, low, high, signature = _unpack_signature(raw, len(raw) - SIGNATURE_SIZE)
+        if not compare_digest(digest.digest()[:6], signature):
+            return Refusal.BAD_SIGNATURE
+        stream, timestamp = (link, system, component), low | high << 32
+        last = self._last.get(stream)
+        if timestamp <= (self._earliest_new() if last is None else last):
+            return Refusal.REPLAYED
+        if timestamp > self._reserved.get(stream, 0):
+            self._reserved[stream] = self._timestamps.reserve(stream, timestamp)
+        self._last[stream] = timestamp
+        return None
+
+    def _earliest_new(self) -> int:
+        return max(self._clock(), *self._last.values(), 0) - MINUTE

@@ -1,0 +1,255 @@
+"""The messages of common.xml that a rover and its ground stations exchange, in wire order.
+
+What they mean is told at https://mavlink.io/en/messages/common.html; units as there.
+"""
+
+from typing import Any, NamedTuple
+
+
+class Heartbeat(NamedTuple):
+    """Anybody, once a second: I am here, and of this kind."""
+
+    custom_mode: int
+    type: int
+    autopilot: int
+    base_mode: int
+    system_status: int
+    mavlink_version: int
+
+
+class SysStatus(NamedTuple):
+    """The robot's health: sensors as bits of MAV_SYS_STATUS_SENSOR, load in 0.1 %."""
+
+    onboard_control_sensors_present: int
+    onboard_control_sensors_enabled: int
+    onboard_control_sensors_health: int
+    load: int
+    voltage_battery: int
+    current_battery: int
+    drop_rate_comm: int
+    errors_comm: int
+    errors_count1: int
+    errors_count2: int
+    errors_count3: int
+    errors_count4: int
+    battery_remaining: int
+    onboard_control_sensors_present_extended: int = 0
+    onboard_control_sensors_enabled_extended: int = 0
+    onboard_control_sensors_health_extended: int = 0
+
+
+class SystemTime(NamedTuple):
+    """The sender's clocks: Unix time [us], 0 if unknown, and time since its start [ms]."""
+
+    time_unix_usec: int
+    time_boot_ms: int
+
+
+class Ping(NamedTuple):
+    """A ping, target 0, or the answer to one, at whom it came from."""
+
+    time_usec: int
+    seq: int
+    target_system: int
+    target_component: int
+
+
+class Timesync(NamedTuple):
+    """Asked with tc1 = 0, ts1 = now [ns]; answered with tc1 = now there and the same ts1."""
+
+    tc1: int
+    ts1: int
+
+
+class Attitude(NamedTuple):
+    """Roll, pitch, yaw of the body (forward, right, down) against north, east, down [rad]."""
+
+    time_boot_ms: int
+    roll: float
+    pitch: float
+    yaw: float
+    rollspeed: float
+    pitchspeed: float
+    yawspeed: float
+
+
+class LocalPositionNed(NamedTuple):
+    """Position [m] and velocity [m/s], north, east, down."""
+
+    time_boot_ms: int
+    x: float
+    y: float
+    z: float
+    vx: float
+    vy: float
+    vz: float
+
+
+class Odometry(NamedTuple):
+    """Pose in `frame_id` and velocity in `child_frame_id`, with covariances (upper triangles)."""
+
+    time_usec: int
+    x: float
+    y: float
+    z: float
+    q: tuple[float, ...]
+    vx: float
+    vy: float
+    vz: float
+    rollspeed: float
+    pitchspeed: float
+    yawspeed: float
+    pose_covariance: tuple[float, ...]
+    velocity_covariance: tuple[float, ...]
+    frame_id: int
+    child_frame_id: int
+    reset_counter: int = 0
+    estimator_type: int = 0
+    quality: int = 0
+
+
+class ParamRequestRead(NamedTuple):
+    """Asks for one parameter, by index, or by name if the index is -1."""
+
+    param_index: int
+    target_system: int
+    target_component: int
+    param_id: bytes
+
+
+class ParamRequestList(NamedTuple):
+    """Asks for all parameters."""
+
+    target_system: int
+    target_component: int
+
+
+class ParamSet(NamedTuple):
+    """Asks for a parameter to be set; answered with PARAM_VALUE, whatever came of it."""
+
+    param_value: float
+    target_system: int
+    target_component: int
+    param_id: bytes
+    param_type: int
+
+
+class ParamValue(NamedTuple):
+    """The value that a parameter has."""
+
+    param_value: float
+    param_count: int
+    param_index: int
+    param_id: bytes
+    param_type: int
+
+
+class ParamError(NamedTuple):
+    """Why a parameter was not read or set (MAV_PARAM_ERROR)."""
+
+    param_index: int
+    target_system: int
+    target_component: int
+    param_id: bytes
+    error: int
+
+
+class CommandLong(NamedTuple):
+    """A command (MAV_CMD) with seven numbers; always answered with COMMAND_ACK."""
+
+    param1: float
+    param2: float
+    param3: float
+    param4: float
+    param5: float
+    param6: float
+    param7: float
+    command: int
+    target_system: int
+    target_component: int
+    confirmation: int
+
+
+class CommandInt(NamedTuple):
+    """A command (MAV_CMD) with a position as integers; always answered with COMMAND_ACK."""
+
+    param1: float
+    param2: float
+    param3: float
+    param4: float
+    x: int
+    y: int
+    z: float
+    command: int
+    target_system: int
+    target_component: int
+    frame: int
+    current: int
+    autocontinue: int
+
+
+class CommandAck(NamedTuple):
+    """What became of a command (MAV_RESULT)."""
+
+    command: int
+    result: int
+    progress: int = 0
+    result_param2: int = 0
+    target_system: int = 0
+    target_component: int = 0
+
+
+class AutopilotVersion(NamedTuple):
+    """What runs here, and what it can do (MAV_PROTOCOL_CAPABILITY)."""
+
+    capabilities: int
+    uid: int
+    flight_sw_version: int
+    middleware_sw_version: int
+    os_sw_version: int
+    board_version: int
+    vendor_id: int
+    product_id: int
+    flight_custom_version: tuple[int, ...]
+    middleware_custom_version: tuple[int, ...]
+    os_custom_version: tuple[int, ...]
+    uid2: tuple[int, ...] = (0,) * 18
+
+
+class MessageInterval(NamedTuple):
+    """How often a message is sent [us]; -1 never, 0 not at all known here."""
+
+    interval_us: int
+    message_id: int
+
+
+class Statustext(NamedTuple):
+    """A line for a person (severity: MAV_SEVERITY), at most 50 bytes."""
+
+    severity: int
+    text: bytes
+    id: int = 0
+    chunk_seq: int = 0
+
+
+STANDARD: dict[str, type[tuple[Any, ...]]] = {
+    "HEARTBEAT": Heartbeat,
+    "SYS_STATUS": SysStatus,
+    "SYSTEM_TIME": SystemTime,
+    "PING": Ping,
+    "TIMESYNC": Timesync,
+    "ATTITUDE": Attitude,
+    "LOCAL_POSITION_NED": LocalPositionNed,
+    "ODOMETRY": Odometry,
+    "PARAM_REQUEST_READ": ParamRequestRead,
+    "PARAM_REQUEST_LIST": ParamRequestList,
+    "PARAM_SET": ParamSet,
+    "PARAM_VALUE": ParamValue,
+    "PARAM_ERROR": ParamError,
+    "COMMAND_LONG": CommandLong,
+    "COMMAND_INT": CommandInt,
+    "COMMAND_ACK": CommandAck,
+    "AUTOPILOT_VERSION": AutopilotVersion,
+    "MESSAGE_INTERVAL": MessageInterval,
+    "STATUSTEXT": Statustext,
+}
