@@ -7,7 +7,7 @@ from typing import Generic, NamedTuple, TypeVar
 
 from laglab_controller import kalman
 from laglab_controller.estimator import Applied, Measured
-from laglab_controller.kalman import Belief
+from laglab_controller.kalman import Belief, Compared, Innovation
 from laglab_controller.log import Log, append
 from laglab_controller.model import Matrix, Model, Vector
 from laglab_controller.sliding import SlidingProduct
@@ -95,6 +95,13 @@ class DelayedEkf(Generic[W]):
         for s, z in sorted(measurements, key=_sampled):
             state = self._advance(state, s, z, known)
         return self._put_right(state, known)
+
+    def innovation(self, state: DelayedState[W]) -> Innovation | None:
+        """z_s - h(x^-_s), where the EKF is."""
+        newest = state.filtered.newest
+        if newest.z is None:
+            return None
+        return kalman.innovation(self.model, Compared(newest.prior, newest.z))
 
     def _advance(
         self, state: DelayedState[W], s: int, z: Vector | None, known: Mapping[int, Vector]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from laglab_controller.estimator import Applied, Measured
-from laglab_controller.kalman import gain
+from laglab_controller.kalman import Belief, Compared, Innovation, gain, innovation
 from laglab_controller.model import Matrix, Model, Vector, symmetric
 
 
@@ -31,6 +31,7 @@ class ExactState(NamedTuple):
     """Of ticks k - len(priors) + 1 ... k."""
     newest: int
     """The tick of the newest measurement used."""
+    compared: Compared | None
 
 
 @dataclass(frozen=True)
@@ -48,14 +49,14 @@ class PopfExact:
     def start(self, x: Vector, P: Matrix) -> ExactState:
         """The prior of tick 0."""
         row = P[np.newaxis]
-        return ExactState(0, x, P, row, (Prior(x, row),), newest=-1)
+        return ExactState(0, x, P, row, (Prior(x, row),), newest=-1, compared=None)
 
     def predict(self, state: ExactState, u: Vector) -> ExactState:
         """(27), and E[x~^-_{k+1} x~^-_{k-i}^T] = A C_i."""
         x, P = self.model.predict(state.x, state.P, u)
         row = np.concatenate((P[np.newaxis], self.model.A(state.x, u) @ state.row))
         row, priors = row[: self.memory], state.priors[-self.memory + 1 :]
-        return ExactState(state.tick + 1, x, P, row, (*priors, Prior(x, row)), state.newest)
+        return ExactState(state.tick + 1, x, P, row, (*priors, Prior(x, row)), state.newest, None)
 
     def correct(
         self, state: ExactState, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
@@ -68,7 +69,7 @@ class PopfExact:
 
     def _correct(self, state: ExactState, s: int, z: Vector) -> ExactState:
         """x~+ = x~ - K (H x~^-_s - v_s): K is the best one, and the C_i follow."""
-        tick, x, P, row, priors, _ = state
+        tick, x, P, row, priors, _, _ = state
         m = tick - s
         priors, row = priors[-m - 1 :], row[: m + 1]
         x_s, P_s, C_m = priors[0].x, priors[0].row[0], row[m]
@@ -82,4 +83,9 @@ class PopfExact:
             row - K @ H @ since_s[::-1],
             priors,
             newest=s,
+            compared=Compared(Belief(x_s, P_s), z),
         )
+
+    def innovation(self, state: ExactState) -> Innovation | None:
+        """z_s - h(x^-_s)."""
+        return innovation(self.model, state.compared)

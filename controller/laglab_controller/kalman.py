@@ -20,6 +20,30 @@ class Belief(NamedTuple):
     P: Matrix
 
 
+class Compared(NamedTuple):
+    """A measurement z (q,) and the prior that a filter compared it with."""
+
+    prior: Belief
+    z: Vector
+
+
+class Innovation(NamedTuple):
+    """z - h(x^-) (q,) and its claimed covariance S = H P^- H^T + R (q, q)."""
+
+    value: Vector
+    S: Matrix
+
+
+def innovation(model: Model, compared: Compared | None) -> Innovation | None:
+    """Of the comparison; None where there was none."""
+    if compared is None:
+        return None
+    (x, P), z = compared
+    H = model.H(x)
+    S = H @ P @ H.T + model.measurement_noise(x)
+    return Innovation(model.innovation(z, model.h(x)), S)
+
+
 def correct(model: Model, prior: Belief, z: Vector) -> Belief:
     """(8), with P+ in Joseph's form, which stays positive definite under rounding."""
     x, P = prior

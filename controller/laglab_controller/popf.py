@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from laglab_controller.estimator import Applied, Measured
 from laglab_controller.history import History
-from laglab_controller.kalman import Belief, gain
+from laglab_controller.kalman import Belief, Compared, Innovation, gain, innovation
 from laglab_controller.model import Matrix, Model, Vector, identity, symmetric
 from laglab_controller.sliding import SlidingProduct
 
@@ -34,6 +34,7 @@ class PopfState(NamedTuple):
     own factor."""
     used: int
     """Bit i is set when z_{k-i} has been used."""
+    compared: Compared | None
 
 
 @dataclass(frozen=True)
@@ -58,16 +59,16 @@ class Popf:
         I = identity(len(x))  # noqa: E741
         window: SlidingProduct[Step, Matrix] = SlidingProduct(_compose, I)
         past = History(window, since=0, older=None, memory=self.memory)
-        return PopfState(0, x, P, Belief(x, P), I, past, used=0)
+        return PopfState(0, x, P, Belief(x, P), I, past, used=0, compared=None)
 
     def predict(self, state: PopfState, u: Vector) -> PopfState:
         """(27), and one more factor for (21)."""
-        tick, x, P, prior, left, past, used = state
+        tick, x, P, prior, left, past, used, _ = state
         factor = self.model.A(x, u).dot(left)
         past = past.push(tick, Step(tick, prior, factor), factor)
         used = used << 1 & (1 << self.memory) - 1
         prior = Belief(*self.model.predict(x, P, u))
-        return PopfState(tick + 1, *prior, prior, identity(len(x)), past, used)
+        return PopfState(tick + 1, *prior, prior, identity(len(x)), past, used, None)
 
     def correct(
         self, state: PopfState, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
@@ -80,7 +81,7 @@ class Popf:
         return state
 
     def _correct(self, state: PopfState, s: int, z: Vector) -> PopfState:
-        tick, x, P, prior, left, past, used = state
+        tick, x, P, prior, left, past, used, _ = state
         past = past.split(at=min(s, tick - 1))
         (x_s, P_s), M = (prior, left) if s == tick else _prior_and_M(past, s, left)
         model, H = self.model, self.model.H(x_s)
@@ -92,7 +93,12 @@ class Popf:
         seen = H_k.dot(P_s) if self.covariance_at_k else PHt.T
         P = symmetric(P - K.dot(seen).dot(M.T))  # (23)
         left = left - K.dot(H_k).dot(left)
-        return PopfState(tick, x, P, prior, left, past, used | 1 << tick - s)
+        used |= 1 << tick - s
+        return PopfState(tick, x, P, prior, left, past, used, Compared(Belief(x_s, P_s), z))
+
+    def innovation(self, state: PopfState) -> Innovation | None:
+        """z_s - h(x^-_s)."""
+        return innovation(self.model, state.compared)
 
 
 def _prior_and_M(past: History[Step, Matrix], s: int, left: Matrix) -> tuple[Belief, Matrix]:

@@ -6,6 +6,7 @@ from typing import Generic, NamedTuple, TypeVar
 
 from laglab_controller.estimator import Applied, Estimator, Measured, State
 from laglab_controller.history import History
+from laglab_controller.kalman import Innovation
 from laglab_controller.model import Matrix, Vector
 from laglab_controller.sliding import SlidingProduct
 
@@ -79,6 +80,10 @@ class Rewinding(Generic[S]):
             state = self._put_right(state, known)
         inner = self.estimator.correct(state.state, measurements)
         return RewindingState(inner, (*state.arrived, *measurements), state.history)
+
+    def innovation(self, state: RewindingState[S]) -> Innovation | None:
+        """The estimator's own."""
+        return self.estimator.innovation(state.state)
 
     def _put_right(
         self, state: RewindingState[S], known: Mapping[int, Vector]

@@ -1,5 +1,7 @@
 """The station's side of the link without I/O: the robot's bytes in, the answer's bytes out."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from laglab_controller.controller import Control, Controller, StationConfig, diverged
@@ -32,8 +34,12 @@ class Station:
     is every other sender once a robot was heard. The first tick heard is tick 0 of section 3.
     """
 
-    def __init__(self, config: StationConfig) -> None:
-        self._controller = Controller(config)
+    def __init__(
+        self,
+        config: StationConfig,
+        controller: Callable[[StationConfig], Controller] = Controller,
+    ) -> None:
+        self._controller = controller(config)
         self._sender = Sender(STATION_SYSTEM, STATION_COMPONENT)
         self._receiver = Receiver()
         self._robot: tuple[int, int] | None = None
