@@ -1,9 +1,12 @@
 """The station's side of the link without I/O: the robot's bytes in, the answer's bytes out."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from laglab_controller.controller import Control, Controller, StationConfig, diverged
 from laglab_controller.estimator import Measured, State
+from laglab_controller.flight import Echo
 from laglab_protocol import (
     STATION_COMPONENT,
     STATION_SYSTEM,
@@ -31,8 +34,12 @@ class Station:
     is every other sender once a robot was heard. The first tick heard is tick 0 of section 3.
     """
 
-    def __init__(self, config: StationConfig) -> None:
-        self._controller = Controller(config)
+    def __init__(
+        self,
+        config: StationConfig,
+        controller: Callable[[StationConfig], Controller] = Controller,
+    ) -> None:
+        self._controller = controller(config)
         self._sender = Sender(STATION_SYSTEM, STATION_COMPONENT)
         self._receiver = Receiver()
         self._robot: tuple[int, int] | None = None
@@ -43,6 +50,7 @@ class Station:
         self._tick: int | None = None
         self._outcome: End | None = None
         self._closed = False
+        self._measurement_delay: int | None = None
 
     @property
     def outcome(self) -> End | None:
@@ -58,6 +66,16 @@ class Station:
     def tick(self) -> int | None:
         """The last tick that was answered; None before the first."""
         return self._tick
+
+    @property
+    def command_delay(self) -> int:
+        """n [ticks], as the robot's echoes have it; what the station was told before the first."""
+        return self._control.flight.command_delay
+
+    @property
+    def measurement_delay(self) -> int | None:
+        """m [ticks] of the last measurement; None before the first."""
+        return self._measurement_delay
 
     def heartbeat(self) -> bytes:
         """The frame that makes the station known to the robot."""
@@ -132,9 +150,24 @@ class Station:
             for message in measurements
             if self._first <= message.tick <= tick
         ]
-        self._control = self._controller.answer(control, arrived)
+        if arrived:
+            self._measurement_delay = tick - self._first - arrived[-1].tick
+        self._control = self._controller.answer(control, arrived, self._echoes(tick, measurements))
         self._tick = tick
         self._answer = self._messages(tick, self._control)
+
+    def _echoes(self, tick: int, measurements: list[Measurement]) -> list[Echo]:
+        """The command in force just before each was sampled, by what the robot says of it."""
+        first = self._first
+        return [
+            Echo(
+                message.tick - first - 1,
+                np.array((message.v, message.omega)),
+                message.command_tick - first if message.command_tick >= first else None,
+            )
+            for message in measurements
+            if first < message.tick <= tick
+        ]
 
     def _messages(self, tick: int, control: Control) -> list[Message]:
         assert self._robot is not None
