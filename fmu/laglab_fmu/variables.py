@@ -197,3 +197,8 @@ VARIABLES = (
 
 REFERENCE = {variable.name: reference for reference, variable in enumerate(VARIABLES)}
 """Value reference by name."""
+
+
+def parameter_names(kind: Kind) -> list[str]:
+    """Names of the parameters of one type."""
+    return [v.name for v in VARIABLES if v.role is Role.PARAMETER and v.kind is kind]
