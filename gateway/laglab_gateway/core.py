@@ -14,7 +14,7 @@ from typing import NamedTuple
 from laglab_gateway.audit import Audit, DirectionAudit
 from laglab_gateway.channel import Channel
 from laglab_gateway.drive import Drive, Safety, follow, refusal, speeds, supervise
-from laglab_gateway.fates import Fates
+from laglab_gateway.fates import Fates, Kind
 from laglab_gateway.linklog import LinkRow
 from laglab_gateway.plant import Plant
 from laglab_gateway.services import RobotState, Services, standard_parameters
@@ -193,15 +193,15 @@ class Gateway:
                 self._drive = follow(command, k)
         supervised = supervise(self._drive, k, config.sample_time, config.safety)
         if supervised.mode is not self._drive.mode:
-            self._announce_stop()
+            self.audit.stops.append(k)
+            self.announce(f"no fresh command for {config.safety.link_timeout} s: stopping")
         self._drive = supervised
         driven = speeds(self._drive, k, config.sample_time, config.safety)
         self._speeds = self.services.allow(*driven)
 
-    def _announce_stop(self) -> None:
-        self.audit.stops.append(self.tick)
-        text = f"no fresh command for {self._config.safety.link_timeout} s: stopping"
-        self._notices.append(Statustext(MAV_SEVERITY_WARNING, text.encode()))
+    def announce(self, text: str) -> None:
+        """Warn everybody who listens, in at most 50 characters, at the end of this tick."""
+        self._notices.append(Statustext(MAV_SEVERITY_WARNING, text.encode()[:50]))
 
     def take_replies(self) -> list[bytes]:
         """The frames that answer requests since the last call: not of the loop, to be sent too."""
@@ -216,10 +216,10 @@ class Gateway:
 
     def take_link_rows(self) -> list[LinkRow]:
         """What the link did to the frames that entered it since the last call."""
-        rows = [*self._measurements.log, *self._commands.log]
-        self._measurements.log.clear()
-        self._commands.log.clear()
-        return rows
+        measurements, commands = self._measurements.take_log(), self._commands.take_log()
+        self.audit.measurement.fates.update(Kind(row.fate) for row in measurements)
+        self.audit.command.fates.update(Kind(row.fate) for row in commands)
+        return [*measurements, *commands]
 
     def close_tick(self) -> TraceRow:
         """Step to k + 1, unless the run ends at k; says what happened at k."""
