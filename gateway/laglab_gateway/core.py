@@ -2,8 +2,8 @@
 
 One tick (the order is the specification's): `open_tick` samples the sensor and gives the frames
 for the station; `receive` takes the station's bytes; `settle` lets the commands that are due come
-into force; `close_tick` says what happened and steps the plant. In lock-step `settle` waits for
-the answer to this tick, so that n = 0 means no delay; in real time it comes right after
+into force and sets the plant going; `close_tick` says what happened. In lock-step `settle` waits
+for the answer to this tick, so that n = 0 means no delay; in real time it comes right after
 `open_tick`, so what arrives during a tick counts from the next one on.
 """
 
@@ -183,7 +183,10 @@ class Gateway:
         self._commands.push(self.tick, command)
 
     def settle(self) -> None:
-        """Let the commands that have come across the link take force, and the failsafe watch."""
+        """Let the commands that have come across the link take force, and the failsafe watch.
+
+        Then the plant is on its way to k + 1, unless the run ends at k.
+        """
         k, config = self.tick, self._config
         for command, _ in self._commands.due(k):
             self.audit.command.arrived(command.tick, k)
@@ -198,6 +201,17 @@ class Gateway:
         self._drive = supervised
         driven = speeds(self._drive, k, config.sample_time, config.safety)
         self._speeds = self.services.allow(*driven)
+        if self._ending is None:
+            self._plant.step(*self._speeds)
+
+    @property
+    def _ending(self) -> Outcome | None:
+        """How the run ends at this tick; None when it goes on."""
+        if self.station_end is not None:
+            return Outcome(EndReason(self.station_end.reason), self.tick)
+        if self.tick == self._config.last_tick:
+            return Outcome(EndReason.COMPLETED, self.tick)
+        return None
 
     def announce(self, text: str) -> None:
         """Warn everybody who listens, in at most 50 characters, at the end of this tick."""
@@ -222,15 +236,11 @@ class Gateway:
         return [*measurements, *commands]
 
     def close_tick(self) -> TraceRow:
-        """Step to k + 1, unless the run ends at k; says what happened at k."""
+        """On to k + 1, unless the run ends at k; says what happened at k."""
         row = self._row()
         self.audit.unanswered += not self.answered
-        if self.station_end is not None:
-            self.outcome = Outcome(EndReason(self.station_end.reason), self.tick)
-        elif self.tick == self._config.last_tick:
-            self.outcome = Outcome(EndReason.COMPLETED, self.tick)
-        else:
-            self._plant.step(*self._speeds)
+        self.outcome = self._ending
+        if self.outcome is None:
             self.tick += 1
             self._begin_tick()
         return row

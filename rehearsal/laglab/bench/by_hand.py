@@ -52,9 +52,7 @@ def seconds_per_tick(transport: str, scenario: Scenario, directory: Path) -> flo
                     raise RunError(f"the loop by hand over {transport} ended early: {report}")
 
 
-def robot_process(
-    scenario: Scenario, transport: str, directory: Path, reports: Connection
-) -> None:
+def robot_process(scenario: Scenario, transport: str, directory: Path, reports: Connection) -> None:
     """Listens, drives to the last tick, and reports how long that took."""
     mavutil = _mavutil()
     with (
@@ -100,7 +98,8 @@ def _drive(
         trace.writerow([k, k * Ts, *pose, *seen, command.v, command.omega, v, omega])
         half_turn = omega * scenario.track / 2
         fmu.setReal(
-            inputs, [(v - half_turn) / scenario.wheel_radius, (v + half_turn) / scenario.wheel_radius]
+            inputs,
+            [(v - half_turn) / scenario.wheel_radius, (v + half_turn) / scenario.wheel_radius],
         )
         fmu.doStep(currentCommunicationPoint=k * Ts, communicationStepSize=Ts)
 

@@ -11,8 +11,9 @@ from typing import NamedTuple
 from laglab.processes import started
 from laglab_protocol import Command, Estimate, Measurement, Message, Sender, Tick
 
-SAMPLE = 0.1
-"""Any double whose last byte is not zero, so that no frame is cut short."""
+POSE = (0.1, 0.1, 0.1)
+COVARIANCE = (0.1, 0.1, 0.1, 0.1, 0.1, 0.1)
+"""Any doubles whose last byte is not zero, so that no frame is cut short."""
 
 Send = Callable[[bytes], object]
 Receive = Callable[[int], bytes]
@@ -28,10 +29,10 @@ class Sizes(NamedTuple):
 
 def tick_sizes(estimates: bool) -> Sizes:
     """Of a tick with one measurement, answered with or without an estimate."""
-    measurement = Measurement(*[SAMPLE] * 5, 1, 1)
-    answer: list[Message] = [Command(SAMPLE, SAMPLE, 1, 1, 1, int(estimates))]
+    measurement = Measurement(*POSE, 0.1, 0.1, 1, 1)
+    answer: list[Message] = [Command(0.1, 0.1, 1, 1, 1, int(estimates))]
     if estimates:
-        answer.append(Estimate(*[SAMPLE] * 9, 1))
+        answer.append(Estimate(*POSE, *COVARIANCE, 1))
     return Sizes(_size([measurement, Tick(1, 1)]), _size(answer))
 
 
@@ -78,9 +79,7 @@ def _over_pty(sizes: Sizes, ticks: int) -> float:
 def _pty_station(path: str, sizes: Sizes, ticks: int, _: Connection) -> None:
     station = os.open(path, os.O_RDWR | os.O_NOCTTY)
     os.write(station, b"?")
-    _answer(
-        lambda data: os.write(station, data), lambda size: os.read(station, size), sizes, ticks
-    )
+    _answer(lambda data: os.write(station, data), lambda size: os.read(station, size), sizes, ticks)
     os.close(station)
 
 
