@@ -111,6 +111,8 @@ class Scenario(BaseModel):
     wheel_slip: Annotated[FiniteFloat, Field(ge=0, lt=1)] = 0.0
     pace: Literal["lockstep", "realtime"] = "lockstep"
     speed: Positive = 1.0
+    silence_timeout: Positive = 3.0
+    """[s] of the wall clock after which a silent side counts as gone."""
     link: LinkScenario = LinkScenario()
     safety: Safety = Safety()
 
