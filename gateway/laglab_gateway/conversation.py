@@ -13,6 +13,9 @@ from laglab_gateway.watch import Watch
 END_TRIES = 5
 """A lost END only costs the station its silence timeout, so a few tries are enough."""
 
+STREAM_SILENCE = 0.05
+"""[s] Bytes that follow each other on a serial line, however slow, come sooner than this."""
+
 
 @dataclass(frozen=True)
 class Patience:
@@ -59,6 +62,7 @@ class Conversation:
         self._patience = patience
         self._watch = watch
         self._heard, self._heard_tick = now(), 0
+        self._last_byte = self._heard
 
     def wait_for_station(self) -> None:
         """Until the station's first heartbeat. Raises StationSilentError."""
@@ -75,13 +79,8 @@ class Conversation:
         self._endpoint.send(b"".join(frames))
         self._recorder.frames(self._gateway.time_us, frames)
 
-    def send_tick(self) -> None:
-        """Open the tick, and use the time in which the station thinks."""
-        self.send(self._gateway.open_tick())
-        self._catch_up()
-
-    def _catch_up(self) -> None:
-        """Write down what was before, tell everybody of what the robot did."""
+    def catch_up(self) -> None:
+        """While the station thinks: write down what was, tell everybody of what the robot did."""
         self._recorder.flush()
         if notices := self._gateway.take_notices():
             self._watch.tell(notices)
@@ -91,8 +90,7 @@ class Conversation:
     def listen(self, timeout: float) -> None:
         """Take what arrives, for at most `timeout` [s]."""
         data = self._endpoint.receive(timeout)
-        # A silence ends an unfinished frame on a stream as the datagram's end does on UDP.
-        frames = self._gateway.receive(data, whole=self._endpoint.datagrams or not data)
+        frames = self._gateway.receive(data, whole=self._endpoint.datagrams or self._silent(data))
         if any(from_station(frame) for frame in frames):
             self._endpoint.accept_peer()
             self._heard, self._heard_tick = self.now(), self._gateway.tick
@@ -100,6 +98,13 @@ class Conversation:
         self._reply()
         if not data:
             self._watch.poll(self._gateway.state)
+
+    def _silent(self, data: bytes) -> bool:
+        """On a stream a silence ends an unfinished frame, as the datagram's end does on UDP."""
+        now = self.now()
+        if data:
+            self._last_byte = now
+        return now - self._last_byte >= STREAM_SILENCE
 
     def _reply(self) -> None:
         if replies := self._gateway.take_replies():
@@ -130,7 +135,7 @@ class Conversation:
 
     def say_goodbye(self, outcome: Outcome) -> None:
         """Tell the station, and give it a few chances to say that it heard."""
-        self._catch_up()
+        self.catch_up()
         for _ in range(END_TRIES):
             self.send([self._gateway.end(outcome.reason)])
             if self.listen_for(lambda: self._gateway.station_end is not None):

@@ -42,7 +42,8 @@ def serve_lockstep(
 
 def _exchange(gateway: Gateway, conversation: Conversation) -> None:
     """Send this tick until it is answered; the station answers a repeat with the same."""
-    conversation.send_tick()
+    conversation.send(gateway.open_tick())
+    conversation.catch_up()
     while not conversation.listen_for(lambda: gateway.answered):
         conversation.check_silence()
         conversation.send(gateway.repeat_tick())
