@@ -1,0 +1,65 @@
+"""A rover for other people's programs to find: `python rover.py URL`.
+
+The whole robot's side with its station inside, disarmed, watched at URL; until SIGTERM.
+"""
+
+import sys
+import time
+
+import numpy as np
+
+from laglab.inline import InlineEndpoint
+from laglab_controller import Law, RobotModel, Station, StationConfig
+from laglab_fmu import Robot, RobotParameters
+from laglab_gateway import (
+    FmuPlant,
+    Gateway,
+    GatewayConfig,
+    NoRecorder,
+    Patience,
+    Services,
+    Watch,
+    Watcher,
+    serve,
+    standard_parameters,
+)
+from laglab_protocol import ROBOT_COMPONENT, ROBOT_SYSTEM, Codec, open_endpoint
+
+START = (-3.0, -2.0, 0.0)
+PARAMETERS = RobotParameters(start=START, noise=False)
+FOREVER = 10**9
+
+
+def station() -> Station:
+    model = RobotModel(
+        sample_time=PARAMETERS.sample_time,
+        wheel_radius=PARAMETERS.wheel_radius,
+        track=PARAMETERS.track,
+        Q=0.01 * np.eye(2),
+        R=np.diag(PARAMETERS.measurement_variance),
+    )
+    law = Law(goal=(0.0, 0.0, 0.0), v_max=1.0, omega_max=1.7, goal_tolerance=0.03)
+    return Station(
+        StationConfig(
+            estimator="raw",
+            model=model,
+            law=law,
+            initial_estimate=np.array(START),
+            initial_covariance=1e-4 * np.eye(3),
+            command_delay=0,
+        )
+    )
+
+
+def main(url: str) -> None:
+    services = Services(standard_parameters(0, 0), armed=False)
+    config = GatewayConfig(0, 0, FOREVER, PARAMETERS.sample_time)
+    with Robot.open(3, PARAMETERS) as robot, open_endpoint(url) as endpoint:
+        gateway = Gateway(FmuPlant(robot, PARAMETERS), config, services)
+        watch = Watch(services, [Watcher(endpoint, Codec(ROBOT_SYSTEM, ROBOT_COMPONENT))])
+        link = InlineEndpoint(station())
+        serve(gateway, link, NoRecorder(), Patience(), lambda _: time.sleep(0.002), watch)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
