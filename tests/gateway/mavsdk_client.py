@@ -45,7 +45,7 @@ def tour(port: int) -> dict[str, Any]:
         seen: dict[str, Any] = {"system": system.get_system_id()}
         direct.load_custom_xml(dialect_path().read_text())
         seen["read"] = param.get_param_float("DELAY_N")
-        param.set_param_float("V_MAX", 0.75)
+        param.set_param_float("V_MAX", 1.25)
         seen["set"] = param.get_param_float("V_MAX")
         seen["refused"] = refused(param)
         seen["before"] = positions.get(timeout=10)

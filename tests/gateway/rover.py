@@ -17,10 +17,11 @@ from laglab_gateway import (
     GatewayConfig,
     NoRecorder,
     Patience,
+    Safety,
     Services,
     Watch,
     Watcher,
-    serve,
+    serve_lockstep,
     standard_parameters,
 )
 from laglab_protocol import ROBOT_COMPONENT, ROBOT_SYSTEM, Codec, open_endpoint
@@ -51,14 +52,19 @@ def station() -> Station:
     )
 
 
+def _breathe(_: int) -> None:
+    """Five times real time, and room for others."""
+    time.sleep(0.002)
+
+
 def main(url: str) -> None:
-    services = Services(standard_parameters(0, 0), armed=False)
+    services = Services(standard_parameters(0, 0, Safety()), armed=False)
     config = GatewayConfig(0, 0, FOREVER, PARAMETERS.sample_time)
     with Robot.open(3, PARAMETERS) as robot, open_endpoint(url) as endpoint:
-        gateway = Gateway(FmuPlant(robot, PARAMETERS), config, services)
+        gateway = Gateway(FmuPlant(robot, PARAMETERS), config, services=services)
         watch = Watch(services, [Watcher(endpoint, Codec(ROBOT_SYSTEM, ROBOT_COMPONENT))])
         link = InlineEndpoint(station())
-        serve(gateway, link, NoRecorder(), Patience(), lambda _: time.sleep(0.002), watch)
+        serve_lockstep(gateway, link, NoRecorder(), Patience(), _breathe, watch)
 
 
 if __name__ == "__main__":

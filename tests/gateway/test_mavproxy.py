@@ -94,12 +94,12 @@ def north_and_east(mavproxy: MavProxy) -> tuple[float, float]:
 @pytest.mark.usefixtures("rover")
 def test_mavproxy_finds_reads_sets_arms_and_sees_it_move(mavproxy: MavProxy) -> None:
     mavproxy.hears("Detected vehicle 1:1")
-    mavproxy.hears("Received 4 parameters")
+    mavproxy.hears("Received 5 parameters")
 
-    mavproxy.say("param set V_MAX 0.5")
+    mavproxy.say("param set V_MAX 1.5")
     time.sleep(0.5)  # it sends, and tells nothing when it is confirmed
     mavproxy.say("param show V_MAX")
-    mavproxy.hears(r"V_MAX +0\.5")
+    mavproxy.hears(r"V_MAX +1\.5")
 
     assert north_and_east(mavproxy) == (-2.0, -3.0)
     mavproxy.say("arm throttle")

@@ -23,7 +23,7 @@ def test_mavsdk_finds_reads_sets_arms_and_sees_it_move(port: int) -> None:
 
     assert seen["system"] == 1
     assert seen["read"] == 0.0
-    assert seen["set"] == 0.75
+    assert seen["set"] == 1.25
     assert seen["refused"] == "READ_ONLY"
     assert (seen["before"]["x"], seen["before"]["y"]) == (-2.0, -3.0)
     assert seen["armed"] == 0
