@@ -73,8 +73,8 @@ class Gateway:
         plant: Plant,
         config: GatewayConfig,
         fates: Mapping[Direction, Fates] | None = None,
-        services: Services | None = None,
         codec: Codec | None = None,
+        services: Services | None = None,
     ) -> None:
         n, m, Ts = config.command_delay, config.measurement_delay, config.sample_time
         self.tick = 0
@@ -86,7 +86,7 @@ class Gateway:
         self._plant = plant
         codec = codec or Codec(ROBOT_SYSTEM, ROBOT_COMPONENT)
         self._sender, self._receiver = codec.sender, codec.receiver
-        self.services = services or Services(standard_parameters(n, m))
+        self.services = services or Services(standard_parameters(n, m, config.safety))
         self._replies: list[Message] = []
         self._notices: list[Message] = []
         fates = fates or {}
@@ -184,20 +184,26 @@ class Gateway:
 
     def settle(self) -> None:
         """Let the commands that have come across the link take force, and the failsafe watch."""
-        k, config = self.tick, self._config
+        k, Ts, safety = self.tick, self._config.sample_time, self._safety()
         for command, _ in self._commands.due(k):
             self.audit.command.arrived(command.tick, k)
-            if refused := refusal(self._drive, command, config.safety):
+            if refused := refusal(self._drive, command, safety):
                 self.audit.refused[refused] += 1
             else:
                 self._drive = follow(command, k)
-        supervised = supervise(self._drive, k, config.sample_time, config.safety)
+        supervised = supervise(self._drive, k, Ts, safety)
         if supervised.mode is not self._drive.mode:
             self.audit.stops.append(k)
-            self.announce(f"no fresh command for {config.safety.link_timeout} s: stopping")
+            self.announce(f"no fresh command for {safety.link_timeout} s: stopping")
         self._drive = supervised
-        driven = speeds(self._drive, k, config.sample_time, config.safety)
-        self._speeds = self.services.allow(*driven)
+        armed = self.services.arming.armed
+        self._speeds = speeds(self._drive, k, Ts, safety) if armed else (0.0, 0.0)
+
+    def _safety(self) -> Safety:
+        """The limits and times now: ground stations may set some of them."""
+        now = self.services.parameters
+        limits = (now["V_MAX"] or None, now["OMEGA_MAX"] or None)
+        return Safety(*limits, now["LINK_TIMEOUT"], self._config.safety.ramp)
 
     def announce(self, text: str) -> None:
         """Warn everybody who listens, in at most 50 characters, at the end of this tick."""
@@ -213,6 +219,11 @@ class Gateway:
         notices, self._notices = self._notices, []
         self._replies += notices
         return notices
+
+    def ask_time(self) -> list[bytes]:
+        """The question how far the station's clock is away, if there is a clock to compare with."""
+        timesync = self.services.timesync
+        return [self._sender.frame(timesync.ask())] if timesync else []
 
     def take_link_rows(self) -> list[LinkRow]:
         """What the link did to the frames that entered it since the last call."""
