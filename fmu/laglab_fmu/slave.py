@@ -35,11 +35,8 @@ _SETTERS_3 = {
     "setInt64": parameter_names(Kind.ENUMERATION),
     "setBoolean": parameter_names(Kind.BOOLEAN),
 }
-DISCARD = 2
-"""Statuses from here up mean that a call did not do what it was asked."""
-
 Call = Callable[[], int]
-"""An FMI function with all its arguments; gives its status."""
+"""An FMI function with all its arguments; gives its status, 0 when it did what it was asked."""
 
 
 def fmu_path(version: int) -> Path:
@@ -193,14 +190,14 @@ def _unloading_on_failure(fmu: FMU2Slave | FMU3Slave) -> Iterator[None]:
 
 
 def open_slave(path: Path, make: Callable[[str], Slave], stack: ExitStack) -> Slave:
-    """Extracts an FMU and makes an instance out of its folder; `stack` undoes both.
+    """Extracts an FMU's binaries and makes an instance of them; `stack` undoes both.
 
     Raises:
         CallError: it does not start.
     """
     folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="laglab-fmu-"))
     try:
-        fmpy.extract(path, folder)
+        fmpy.extract(path, folder, include=lambda name: name.startswith("binaries/"))
         slave = make(folder)
     except Exception as error:  # fmpy raises nothing narrower
         raise CallError(f"{path} does not start ({error}); run `laglab fmu build`") from error

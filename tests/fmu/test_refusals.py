@@ -160,7 +160,11 @@ def test_wrong_value_references(make_face: Callable[..., Any], name: str) -> Non
     face = make_face(name, "CoSimulation")
     real = "Real" if name == "Robot2" else "Float64"
     integer = "Integer" if name == "Robot2" else "Int32"
-    for reference, word in ((len(VARIABLES), "unknown"), (2**32 - 1, "unknown"), (REFERENCE["seed"], "seed")):
+    for reference, word in (
+        (len(VARIABLES), "unknown"),
+        (2**32 - 1, "unknown"),
+        (REFERENCE["seed"], "seed"),
+    ):
         with refused(face, ERROR, str(reference), word):
             getattr(face.fmu, "get" + real)([REFERENCE["x"], reference])
         with refused(face, ERROR, str(reference), word):
