@@ -190,19 +190,25 @@ def _unloading_on_failure(fmu: FMU2Slave | FMU3Slave) -> Iterator[None]:
 
 
 def open_slave(path: Path, make: Callable[[str], Slave], stack: ExitStack) -> Slave:
-    """Extracts an FMU's binaries and makes an instance of them; `stack` undoes both.
+    """Extracts an FMU's binary for this machine and makes an instance of it; `stack` undoes both.
 
     Raises:
         CallError: it does not start.
     """
     folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="laglab-fmu-"))
     try:
-        fmpy.extract(path, folder, include=lambda name: name.startswith("binaries/"))
+        fmpy.extract(path, folder, include=_is_needed)
         slave = make(folder)
     except Exception as error:  # fmpy raises nothing narrower
         raise CallError(f"{path} does not start ({error}); run `laglab fmu build`") from error
     stack.callback(slave.free)
     return slave
+
+
+def _is_needed(name: str) -> bool:
+    platform = host_platform()
+    own = tuple(f"binaries/{folder}/" for folder in (platform.fmi2_folder, platform.fmi3_folder))
+    return name.startswith(own)
 
 
 def initialize(slave: Slave, robots: Sequence[RobotParameters]) -> None:
