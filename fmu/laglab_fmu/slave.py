@@ -131,20 +131,21 @@ class Slave2:
 class Slave3:
     """FMI 3.0: one robot or a fleet."""
 
-    def __init__(self, folder: str, robots: int | None = None) -> None:
+    def __init__(self, folder: str, fleet: bool = False) -> None:
         self.log: list[str] = []
+        self.fleet = fleet
         self.fmu = FMU3Slave(guid=TOKEN, modelIdentifier=MODEL_NAME, unzipDirectory=folder)
         with _unloading_on_failure(self.fmu):
             self.fmu.instantiate(logMessage=self._logged)
-        if robots is not None:
-            self.fmu.enterConfigurationMode()
-            self.fmu.setUInt64([REFERENCE["robots"]], [robots])
-            self.fmu.exitConfigurationMode()
 
     def _logged(self, _environment: Any, _status: int, _category: bytes, message: bytes) -> None:
         self.log.append(message.decode())
 
     def initialize(self, robots: Sequence[RobotParameters]) -> None:
+        if self.fleet:
+            self.fmu.enterConfigurationMode()
+            self.fmu.setUInt64([REFERENCE["robots"]], [len(robots)])
+            self.fmu.exitConfigurationMode()
         for setter, names in _SETTERS_3.items():
             getattr(self.fmu, setter)([REFERENCE[name] for name in names], values(robots, names))
         self.fmu.enterInitializationMode(startTime=0.0)

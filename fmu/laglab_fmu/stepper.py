@@ -77,6 +77,7 @@ class Stepper:
 
     def close(self) -> None:
         """Frees the instance and the library, removes the extracted files. Twice does no harm."""
+        self._set = self._step = self._get = _closed
         self._stack.close()
 
     def __enter__(self) -> Self:
@@ -89,6 +90,11 @@ class Stepper:
         trace: TracebackType | None,
     ) -> None:
         self.close()
+
+
+def _closed() -> int:
+    """Takes the place of the FMU's functions, which would read freed memory."""
+    raise CallError("the FMU instance has been closed; open another")
 
 
 def common_sample_time(robots: Sequence[RobotParameters]) -> float:
