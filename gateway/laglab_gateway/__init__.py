@@ -2,7 +2,7 @@
 
 from laglab_gateway.channel import Channel
 from laglab_gateway.conversation import Link, Patience
-from laglab_gateway.core import Gateway, GatewayConfig, Outcome
+from laglab_gateway.core import Gateway
 from laglab_gateway.drive import Safety
 from laglab_gateway.errors import GatewayError, StationSilentError, TimelineError, TraceError
 from laglab_gateway.fates import Fates, RandomFates
@@ -21,6 +21,7 @@ from laglab_gateway.recorder import (
     Recorder,
 )
 from laglab_gateway.services import Parameter, Parameters, Services, standard_parameters
+from laglab_gateway.side import GatewayConfig, Outcome
 from laglab_gateway.timeline import Direction, Event
 from laglab_gateway.trace import Trace, TraceRow, read_trace
 from laglab_gateway.watch import Watch, Watcher

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from time import monotonic
 from typing import Protocol
 
-from laglab_gateway.core import Gateway, Outcome, from_station
 from laglab_gateway.errors import StationSilentError
 from laglab_gateway.recorder import Recorder
+from laglab_gateway.side import Outcome, RobotSide, from_station
 from laglab_gateway.watch import Watch
 
 END_TRIES = 5
@@ -45,7 +45,7 @@ class Conversation:
 
     def __init__(
         self,
-        gateway: Gateway,
+        gateway: RobotSide,
         endpoint: Link,
         recorder: Recorder,
         patience: Patience,
