@@ -58,7 +58,7 @@ class Conversation:
         self._recorder = recorder
         self._patience = patience
         self._watch = watch
-        self._heard = now()
+        self._heard, self._heard_tick = now(), 0
 
     def wait_for_station(self) -> None:
         """Until the station's first heartbeat. Raises StationSilentError."""
@@ -81,7 +81,7 @@ class Conversation:
         frames = self._gateway.receive(data, whole=self._endpoint.datagrams or not data)
         if any(from_station(frame) for frame in frames):
             self._endpoint.accept_peer()
-            self._heard = self.now()
+            self._heard, self._heard_tick = self.now(), self._gateway.tick
         self._recorder.frames(self._gateway.time_us, [frame.raw for frame in frames])
         self._reply()
         if not data:
@@ -104,7 +104,7 @@ class Conversation:
         """Raises StationSilentError when the station has been silent for longer than allowed."""
         silence = self.now() - self._heard
         if silence > self._patience.silence:
-            raise StationSilentError(self._gateway.tick, silence)
+            raise StationSilentError(self._heard_tick, silence)
 
     def finish_tick(self) -> int:
         """Close the tick, record it, tell everybody of what the robot did; returns the tick."""

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from laglab_gateway.audit import Audit, DirectionAudit
 from laglab_gateway.channel import Channel
 from laglab_gateway.drive import Drive, Safety, follow, refusal
-from laglab_gateway.fates import Fates
+from laglab_gateway.fates import Fates, Kind
 from laglab_gateway.linklog import LinkRow
 from laglab_gateway.services import RobotState, Services
 from laglab_gateway.timeline import Direction
@@ -206,10 +206,10 @@ class RobotSide(ABC):
 
     def take_link_rows(self) -> list[LinkRow]:
         """What the link did to the frames that entered it since the last call."""
-        rows = [*self._measurements.log, *self._commands.log]
-        self._measurements.log.clear()
-        self._commands.log.clear()
-        return rows
+        measurements, commands = self._measurements.take_log(), self._commands.take_log()
+        self.audit.measurement.fates.update(Kind(row.fate) for row in measurements)
+        self.audit.command.fates.update(Kind(row.fate) for row in commands)
+        return [*measurements, *commands]
 
     @abstractmethod
     def close_tick(self) -> TraceRow:

@@ -41,6 +41,11 @@ def robot_parameters(scenario: Scenario) -> RobotParameters:
         start=scenario.start,
         seed=scenario.seed,
         noise=scenario.noise,
+        wheel_speed_max=scenario.wheel_speed_max,
+        motor_time_constant=scenario.motor_time_constant,
+        wheel_radius_error=scenario.wheel_radius_error,
+        track_error=scenario.track_error,
+        wheel_slip=scenario.wheel_slip,
     )
 
 
