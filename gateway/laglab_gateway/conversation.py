@@ -20,6 +20,7 @@ class Patience:
 
     repeat_after: float = 0.1
     silence: float = 3.0
+    robot_silence: float = 1.0
     connect: float | None = None
 
 
