@@ -5,6 +5,7 @@ serve for the life cycle here; the rest calls the functions of the same library 
 """
 
 import ctypes
+import os
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
@@ -198,13 +199,17 @@ def open_slave(path: Path, make: Callable[[str], Slave], stack: ExitStack) -> Sl
     Raises:
         CallError: it does not start.
     """
-    folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="laglab-fmu-"))
+    folder = tempfile.TemporaryDirectory(prefix="laglab-fmu-")
+    stack.callback(folder.cleanup)
     try:
-        fmpy.extract(path, folder)
-        slave = make(folder)
+        fmpy.extract(path, folder.name)
+        slave = make(folder.name)
     except Exception as error:  # fmpy raises nothing narrower
         raise CallError(f"{path} does not start ({error}); run `laglab fmu build`") from error
     stack.callback(slave.free)
+    if os.name == "posix":
+        # A loaded library needs its file no more, and a process that is killed cleans nothing up.
+        folder.cleanup()
     return slave
 
 
