@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from time import monotonic
 from typing import Protocol
 
-from laglab_gateway.core import Gateway, Outcome, from_station
 from laglab_gateway.errors import StationSilentError
 from laglab_gateway.recorder import Recorder
+from laglab_gateway.side import Outcome, RobotSide, from_station
 from laglab_gateway.watch import Watch
 
 END_TRIES = 5
@@ -20,6 +20,7 @@ class Patience:
 
     repeat_after: float = 0.1
     silence: float = 3.0
+    robot_silence: float = 1.0
     connect: float | None = None
 
 
@@ -45,7 +46,7 @@ class Conversation:
 
     def __init__(
         self,
-        gateway: Gateway,
+        gateway: RobotSide,
         endpoint: Link,
         recorder: Recorder,
         patience: Patience,

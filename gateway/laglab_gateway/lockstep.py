@@ -3,8 +3,9 @@
 from collections.abc import Callable
 
 from laglab_gateway.conversation import Conversation, Link, Patience
-from laglab_gateway.core import Gateway, Outcome
+from laglab_gateway.core import Gateway
 from laglab_gateway.recorder import Recorder
+from laglab_gateway.side import Outcome
 from laglab_gateway.watch import Watch
 from laglab_protocol import EndReason
 

@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from laglab_gateway.conversation import Conversation, Link, Patience
-from laglab_gateway.core import Gateway, Outcome
+from laglab_gateway.core import Gateway
 from laglab_gateway.recorder import Recorder, TimingRow
+from laglab_gateway.side import Outcome
 from laglab_gateway.watch import Watch
 from laglab_protocol import EndReason
 
