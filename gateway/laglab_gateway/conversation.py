@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from time import monotonic
 from typing import Protocol
 
-from laglab_gateway.core import Gateway, Outcome, from_station
 from laglab_gateway.errors import StationSilentError
 from laglab_gateway.recorder import Recorder
+from laglab_gateway.side import Outcome, RobotSide, from_station
 from laglab_gateway.watch import Watch
 
 END_TRIES = 5
@@ -23,6 +23,7 @@ class Patience:
 
     repeat_after: float = 0.1
     silence: float = 3.0
+    robot_silence: float = 1.0
     connect: float | None = None
 
 
@@ -48,19 +49,19 @@ class Conversation:
 
     def __init__(
         self,
-        gateway: Gateway,
+        gateway: RobotSide,
         endpoint: Link,
         recorder: Recorder,
         patience: Patience,
-        watch: Watch,
         now: Callable[[], float] = monotonic,
+        watch: Watch | None = None,
     ) -> None:
         self.now = now
         self._gateway = gateway
         self._endpoint = endpoint
         self._recorder = recorder
         self._patience = patience
-        self._watch = watch
+        self._watch = watch or Watch(gateway.services, [])
         self._heard, self._heard_tick = now(), 0
         self._last_byte = self._heard
 
@@ -80,12 +81,9 @@ class Conversation:
         self._recorder.frames(self._gateway.time_us, frames)
 
     def catch_up(self) -> None:
-        """While the station thinks: write down what was, tell everybody of what the robot did."""
+        """While the station thinks: write down what was, look after everybody else."""
         self._recorder.flush()
-        if notices := self._gateway.take_notices():
-            self._watch.tell(notices)
-            self._reply()
-        self._watch.poll(self._gateway.state)
+        self.look_around()
 
     def listen(self, timeout: float) -> None:
         """Take what arrives, for at most `timeout` [s]."""
@@ -95,9 +93,8 @@ class Conversation:
             self._endpoint.accept_peer()
             self._heard, self._heard_tick = self.now(), self._gateway.tick
         self._recorder.frames(self._gateway.time_us, [frame.raw for frame in frames])
-        self._reply()
-        if not data:
-            self._watch.poll(self._gateway.state)
+        if not self._gateway.answered:
+            self.look_around()
 
     def _silent(self, data: bytes) -> bool:
         """On a stream a silence ends an unfinished frame, as the datagram's end does on UDP."""
@@ -106,9 +103,13 @@ class Conversation:
             self._last_byte = now
         return now - self._last_byte >= STREAM_SILENCE
 
-    def _reply(self) -> None:
+    def look_around(self) -> None:
+        """Send what others than the loop asked for, and look after those who watch."""
+        if notices := self._gateway.take_notices():
+            self._watch.tell(notices)
         if replies := self._gateway.take_replies():
             self.send(replies)
+        self._watch.poll(self._gateway.state)
 
     def listen_for(self, done: Callable[[], bool]) -> bool:
         """Listen until `done`, or until it is time to repeat: then False."""

@@ -11,10 +11,14 @@ from typing import Any
 import numpy as np
 
 from laglab_gateway.conversation import Conversation, Link, Patience
-from laglab_gateway.core import Gateway, Outcome
+from laglab_gateway.core import Gateway
 from laglab_gateway.recorder import Recorder, TimingRow
+from laglab_gateway.side import Outcome
 from laglab_gateway.watch import Watch
 from laglab_protocol import EndReason
+
+TIMESYNC_TICKS = 10
+"""How often the station's clock is asked for."""
 
 LONGEST_WAIT = 0.04
 """[s] Longer waits are left to a kernel timer that is too coarse for a deadline."""
@@ -52,12 +56,13 @@ def serve_realtime(
     endpoint: Link,
     recorder: Recorder,
     patience: Patience,
-    watch: Watch,
     progress: Callable[[int], None],
     period: float,
     now: Callable[[], float] = monotonic,
+    watch: Watch | None = None,
 ) -> tuple[Outcome, Lateness]:
     """Run a gateway to its last tick, one tick every `period` [s] of the clock `now`.
+    Those who `watch` are looked after meanwhile.
 
     Between a deadline and the tick's first byte nothing is done that can be done at another time:
     the plant has been stepped, files wait. `progress` is told of each tick that begins.
@@ -66,7 +71,7 @@ def serve_realtime(
         StationSilentError: the station never came, or fell silent for longer than allowed.
         EndpointError: the link itself broke.
     """
-    conversation = Conversation(gateway, endpoint, recorder, patience, watch, now)
+    conversation = Conversation(gateway, endpoint, recorder, patience, now, watch)
     lateness = Lateness(period)
     try:
         conversation.wait_for_station()
@@ -79,6 +84,8 @@ def serve_realtime(
             conversation.send(gateway.open_tick())
             gateway.settle()
             conversation.catch_up()
+            if gateway.tick % TIMESYNC_TICKS == 0:
+                conversation.send(gateway.ask_time())
             progress(gateway.tick)
             conversation.check_silence()
             answered = _listen_until(deadline + period, gateway, conversation)

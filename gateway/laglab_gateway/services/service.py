@@ -36,10 +36,14 @@ class Services:
     """The rover that ground stations see. Clocks are compared only if there is a `timesync`."""
 
     def __init__(
-        self, parameters: Parameters, armed: bool = True, timesync: Timesyncing | None = None
+        self,
+        parameters: Parameters,
+        armed: bool = True,
+        timesync: Timesyncing | None = None,
+        placeable: bool = True,
     ) -> None:
         self.parameters = parameters
-        self.arming = Arming(armed)
+        self.arming = Arming(armed, placeable)
         self.timesync = timesync
         self._state = RobotState(0, 0.0, 0.0, 0.0, 0.0, 0.0)
         self._commands = Commands(self.arming, self._report, self._set_interval)
@@ -56,12 +60,6 @@ class Services:
         if not _for_the_robot(message):
             return []
         return self.parameters.answer(frame) + self._commands.answer(frame)
-
-    def allow(self, v: float, omega: float) -> tuple[float, float]:
-        """What the robot makes of a command: within its limits, and nothing while disarmed."""
-        if not self.arming.armed:
-            return 0.0, 0.0
-        return _limited(v, self.parameters["V_MAX"]), _limited(omega, self.parameters["OMEGA_MAX"])
 
     def due(self, state: RobotState, now_us: int) -> list[Message]:
         """The telemetry that it is time to send to those who watch; by any steady clock [us]."""
@@ -86,10 +84,6 @@ class Services:
         else:
             self._intervals[number] = max(int(interval_us), SHORTEST_INTERVAL_US)
         return True
-
-
-def _limited(speed: float, limit: float) -> float:
-    return max(-limit, min(limit, speed)) if limit > 0 else speed
 
 
 def _pong(frame: Frame, message: Ping) -> list[Message]:
