@@ -8,10 +8,9 @@ import re
 import signal
 import socket
 import subprocess
-import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -26,28 +25,6 @@ from laglab_protocol import EndReason, read_tlog
 Laglab = Callable[..., subprocess.CompletedProcess[str]]
 Start = Callable[..., "subprocess.Popen[str]"]
 NOTICED_WITHIN = 5.0
-
-
-@pytest.fixture
-def start(tmp_path: Path) -> Iterator[Start]:
-    """Start ``laglab ARGUMENTS`` in the background; whatever still runs at the end is ended."""
-    running: list[subprocess.Popen[str]] = []
-
-    def call(*arguments: str) -> "subprocess.Popen[str]":
-        process = subprocess.Popen(
-            [sys.executable, "-m", "laglab", *arguments],
-            cwd=tmp_path,
-            stderr=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
-            text=True,
-        )
-        running.append(process)
-        return process
-
-    yield call
-    for process in running:
-        process.kill()
-        process.communicate()
 
 
 def listening_port(gateway: "subprocess.Popen[str]") -> str:
