@@ -78,7 +78,7 @@ def serve_realtime(
             late = now() - deadline
             if lateness.add(late):
                 gateway.announce(f"cannot keep up: tick {gateway.tick} is {late:.3f} s late")
-            conversation.send(gateway.open_tick())
+            conversation.send_tick()
             gateway.settle()
             if gateway.tick % TIMESYNC_TICKS == 0:
                 conversation.send(gateway.ask_time())

@@ -133,4 +133,4 @@ def _relay_ticks(
         if relay.outcome is not None:
             return
         conversation.check_silence()
-        conversation.send(relay.open_tick())
+        conversation.send_tick()
