@@ -1,25 +1,31 @@
 """The robot's side of the link without clock or I/O: bytes and a tick in, bytes out.
 
-One tick (the order is the specification's): ``open_tick`` samples the sensor and gives the frames
-for the station; ``receive`` takes the station's bytes until ``answered``; ``close_tick`` applies
-the command that is due and steps the plant.
+One tick (the order is the specification's): `open_tick` samples the sensor and gives the frames
+for the station; `receive` takes the station's bytes; `settle` lets the commands that are due come
+into force; `close_tick` says what happened and steps the plant. In lock-step `settle` waits for
+the answer to this tick, so that n = 0 means no delay; in real time it comes right after
+`open_tick`, so what arrives during a tick counts from the next one on.
 """
 
-import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from laglab_fmu import Reading
-from laglab_gateway.delay import DelayLine
-from laglab_gateway.errors import CommandError
+from laglab_gateway.audit import Audit, DirectionAudit
+from laglab_gateway.channel import Channel
+from laglab_gateway.drive import Drive, Safety, follow, refusal, speeds, supervise
+from laglab_gateway.fates import Fates
+from laglab_gateway.linklog import LinkRow
 from laglab_gateway.plant import Plant
+from laglab_gateway.services import RobotState, Services, standard_parameters
+from laglab_gateway.timeline import Direction
 from laglab_gateway.trace import TraceRow
 from laglab_protocol import (
-    NO_COMMAND,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
     STATION_COMPONENT,
     STATION_SYSTEM,
+    Codec,
     Command,
     End,
     EndReason,
@@ -28,20 +34,20 @@ from laglab_protocol import (
     Heartbeat,
     Measurement,
     Message,
-    Receiver,
-    Sender,
+    Statustext,
     Tick,
 )
 
 
 @dataclass(frozen=True)
 class GatewayConfig:
-    """Delays n and m [ticks], the tick that ends the run, and Ts [s]."""
+    """Delays n and m [ticks], the tick that ends the run, Ts [s], what else the link does."""
 
     command_delay: int
     measurement_delay: int
     last_tick: int
     sample_time: float
+    safety: Safety = field(default_factory=Safety)
 
 
 class Outcome(NamedTuple):
@@ -56,25 +62,47 @@ def from_station(frame: Frame) -> bool:
     return (frame.system, frame.component) == (STATION_SYSTEM, STATION_COMPONENT)
 
 
-class Gateway:
-    """A plant behind two delay lines, in lock-step with a remote station."""
+MAV_SEVERITY_WARNING = 4
 
-    def __init__(self, plant: Plant, config: GatewayConfig) -> None:
+
+class Gateway:
+    """A plant at the end of a link that is late, and perhaps worse."""
+
+    def __init__(
+        self,
+        plant: Plant,
+        config: GatewayConfig,
+        fates: Mapping[Direction, Fates] | None = None,
+        services: Services | None = None,
+        codec: Codec | None = None,
+    ) -> None:
+        n, m, Ts = config.command_delay, config.measurement_delay, config.sample_time
         self.tick = 0
         self.connected = False
         self.outcome: Outcome | None = None
         self.station_end: End | None = None
+        self.audit = Audit(DirectionAudit(n), DirectionAudit(m))
         self._config = config
         self._plant = plant
-        self._sender = Sender(ROBOT_SYSTEM, ROBOT_COMPONENT)
-        self._receiver = Receiver()
-        self._measurements: DelayLine[Measurement] = DelayLine(config.measurement_delay)
-        self._commands: DelayLine[Command] = DelayLine(config.command_delay)
-        self._in_force: Command | None = None
+        codec = codec or Codec(ROBOT_SYSTEM, ROBOT_COMPONENT)
+        self._sender, self._receiver = codec.sender, codec.receiver
+        self.services = services or Services(standard_parameters(n, m))
+        self._replies: list[Message] = []
+        self._notices: list[Message] = []
+        fates = fates or {}
+        self._commands: Channel[Command] = Channel("command", n, Ts, fates.get("command"))
+        self._measurements: Channel[Measurement] = Channel(
+            "measurement", m, Ts, fates.get("measurement")
+        )
+        self._answered_through = -1
+        self._drive = Drive()
+        self._speeds = (0.0, 0.0)
         self._begin_tick()
 
     def _begin_tick(self) -> None:
-        self._reading: Reading = self._plant.read()
+        if pose := self.services.arming.take_reset():
+            self._plant.place(*pose)
+        self._reading = self._plant.read()
         self._batch: list[Message] = []
         self._estimates: list[Estimate] = []
         self._command: Command | None = None
@@ -85,14 +113,24 @@ class Gateway:
         return round(self.tick * self._config.sample_time * 1e6)
 
     @property
+    def state(self) -> RobotState:
+        """The robot at this tick, for those who ask."""
+        reading = self._reading
+        return RobotState(
+            self.time_us, reading.x, reading.y, reading.theta, reading.v, reading.omega
+        )
+
+    @property
     def answered(self) -> bool:
         """Whether the station has said all it has to say on this tick."""
         return self._command is not None
 
     def open_tick(self) -> list[bytes]:
-        """Sample the sensor at k; the frames: each z that is m ticks old now, then the tick."""
+        """Sample the sensor at k; the frames: each z that has come across the link, the tick."""
         self._measurements.push(self.tick, self._sample())
-        due = self._measurements.due(self.tick)
+        due = [crossing.message for crossing in self._measurements.due(self.tick)]
+        for measurement in due:
+            self.audit.measurement.arrived(measurement.tick, self.tick)
         self._batch = [*due, Tick(self.tick, len(due))]
         return self.repeat_tick()
 
@@ -101,72 +139,105 @@ class Gateway:
         return [self._sender.frame(message) for message in self._batch]
 
     def _sample(self) -> Measurement:
-        reading, force = self._reading, self._in_force
-        v, omega, command_tick = (
-            (force.v, force.omega, force.tick) if force else (0.0, 0.0, NO_COMMAND)
-        )
-        return Measurement(
-            reading.x_meas,
-            reading.y_meas,
-            reading.theta_meas,
-            v,
-            omega,
-            self.tick,
-            command_tick,
-        )
+        """z_k, and the command in force on [t_{k-1}, t_k)."""
+        _, _, _, x, y, theta, *_ = self._reading
+        return Measurement(x, y, theta, *self._speeds, self.tick, self._drive.command_tick)
 
     def receive(self, data: bytes, whole: bool) -> list[Frame]:
-        """Take bytes from the link; returns the frames in them. No frame goes on after ``whole``.
-
-        Raises:
-            CommandError: the station commands a speed that is not finite.
-        """
+        """Take bytes from the link; returns the frames in them. No frame goes on after `whole`."""
         frames = self._receiver.receive(data)
         if whole:
             frames += self._receiver.end_datagram()
         for frame in frames:
-            if from_station(frame):
-                self._take(frame.message)
+            if not from_station(frame) or not self._take(frame.message):
+                self._replies += self.services.answer(frame, self.state)
         return frames
 
-    def _take(self, message: Message) -> None:
+    def _take(self, message: Message) -> bool:
+        """Take what belongs to the loop; False when it does not."""
         match message:
             case Heartbeat():
                 self.connected = True
-            case Estimate(tick=tick) if tick == self.tick and not self.answered:
+            case Estimate() if message.tick == self.tick and not self.answered:
                 self._estimates.append(message)
-            case Command(tick=tick) if tick == self.tick and not self.answered:
-                self._take_command(message)
+            case Command() if message.tick == self.tick and not self.answered:
+                self._take_answer(message)
+            case Command() if self._answered_through < message.tick < self.tick:
+                self._push(message)
+            case Command() | Estimate():
+                pass  # said again, or of a tick that has not come
             case End():
                 self.station_end = message
+            case _:
+                return False
+        return True
 
-    def _take_command(self, command: Command) -> None:
+    def _take_answer(self, command: Command) -> None:
         if len(self._estimates) < command.estimates:
             return  # a frame of this answer was lost: the repeat will bring it whole
-        if not (math.isfinite(command.v) and math.isfinite(command.omega)):
-            raise CommandError(command.tick, command.v, command.omega)
         self._command = command
+        self._push(command)
+
+    def _push(self, command: Command) -> None:
+        self._answered_through = command.tick
+        self._commands.push(self.tick, command)
+
+    def settle(self) -> None:
+        """Let the commands that have come across the link take force, and the failsafe watch."""
+        k, config = self.tick, self._config
+        for command, _ in self._commands.due(k):
+            self.audit.command.arrived(command.tick, k)
+            if refused := refusal(self._drive, command, config.safety):
+                self.audit.refused[refused] += 1
+            else:
+                self._drive = follow(command, k)
+        supervised = supervise(self._drive, k, config.sample_time, config.safety)
+        if supervised.mode is not self._drive.mode:
+            self._announce_stop()
+        self._drive = supervised
+        driven = speeds(self._drive, k, config.sample_time, config.safety)
+        self._speeds = self.services.allow(*driven)
+
+    def _announce_stop(self) -> None:
+        self.audit.stops.append(self.tick)
+        text = f"no fresh command for {self._config.safety.link_timeout} s: stopping"
+        self._notices.append(Statustext(MAV_SEVERITY_WARNING, text.encode()))
+
+    def take_replies(self) -> list[bytes]:
+        """The frames that answer requests since the last call: not of the loop, to be sent too."""
+        replies, self._replies = self._replies, []
+        return [self._sender.frame(message) for message in replies]
+
+    def take_notices(self) -> list[Message]:
+        """What the robot did by itself since the last call: everybody is told."""
+        notices, self._notices = self._notices, []
+        self._replies += notices
+        return notices
+
+    def take_link_rows(self) -> list[LinkRow]:
+        """What the link did to the frames that entered it since the last call."""
+        rows = [*self._measurements.log, *self._commands.log]
+        self._measurements.log.clear()
+        self._commands.log.clear()
+        return rows
 
     def close_tick(self) -> TraceRow:
-        """Apply u_{k-n}, step to k + 1 unless k is the last tick, and say what happened at k."""
-        assert self._command is not None, "close_tick before the station's answer"
-        self._commands.push(self.tick, self._command)
-        for command in self._commands.due(self.tick):
-            self._in_force = command
-        row = self._row(self._command)
+        """Step to k + 1, unless the run ends at k; says what happened at k."""
+        row = self._row()
+        self.audit.unanswered += not self.answered
         if self.station_end is not None:
             self.outcome = Outcome(EndReason(self.station_end.reason), self.tick)
         elif self.tick == self._config.last_tick:
             self.outcome = Outcome(EndReason.COMPLETED, self.tick)
         else:
-            self._plant.step(row.v, row.omega)
+            self._plant.step(*self._speeds)
             self.tick += 1
             self._begin_tick()
         return row
 
-    def _row(self, sent: Command) -> TraceRow:
+    def _row(self) -> TraceRow:
         x_est, y_est, theta_est = self._estimates[0][:3] if self._estimates else (None,) * 3
-        v, omega = (self._in_force.v, self._in_force.omega) if self._in_force else (0.0, 0.0)
+        v_sent, omega_sent = self._command[:2] if self._command else (None, None)
         return TraceRow(
             self.tick,
             self.tick * self._config.sample_time,
@@ -174,10 +245,9 @@ class Gateway:
             x_est,
             y_est,
             theta_est,
-            sent.v,
-            sent.omega,
-            v,
-            omega,
+            v_sent,
+            omega_sent,
+            *self._speeds,
         )
 
     def end(self, reason: EndReason) -> bytes:

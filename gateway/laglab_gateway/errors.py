@@ -16,16 +16,9 @@ class StationSilentError(GatewayError):
         )
 
 
-class CommandError(GatewayError):
-    """The station sent a command that no robot can follow."""
-
-    def __init__(self, tick: int, v: float, omega: float) -> None:
-        self.tick = tick
-        super().__init__(
-            f"the controller's command at tick {tick} is not finite (v = {v}, omega = {omega}): "
-            "the robot was not moved; look at the estimate in the trace before it"
-        )
-
-
 class TraceError(GatewayError):
     """A trace file cannot be written or is not a trace."""
+
+
+class TimelineError(GatewayError):
+    """A timeline or link log cannot be read or believed."""

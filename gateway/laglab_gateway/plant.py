@@ -1,8 +1,10 @@
 """What the gateway moves: anything that can be read and stepped one tick."""
 
+import math
+from dataclasses import replace
 from typing import Protocol
 
-from laglab_fmu import Reading, Robot
+from laglab_fmu import Reading, Robot, RobotParameters
 
 
 class Plant(Protocol):
@@ -14,14 +16,18 @@ class Plant(Protocol):
     def step(self, v: float, omega: float) -> None:
         """Drive one tick at ``v`` [m/s] and ``omega`` [rad/s]."""
 
+    def place(self, x: float, y: float, theta: float) -> None:
+        """Put it at a pose [m, m, rad], at rest; NaN stands for the start pose's."""
+
 
 class FmuPlant:
     """The robot FMU, commanded by body speeds instead of wheel speeds."""
 
-    def __init__(self, robot: Robot, wheel_radius: float, track: float) -> None:
+    def __init__(self, robot: Robot, parameters: RobotParameters) -> None:
         self._robot = robot
-        self._wheel_radius = wheel_radius
-        self._half_track = track / 2
+        self._parameters = parameters
+        self._wheel_radius = parameters.wheel_radius
+        self._half_track = parameters.track / 2
 
     def read(self) -> Reading:
         """The FMU's outputs at this tick."""
@@ -32,3 +38,11 @@ class FmuPlant:
         omega_left = (v - omega * self._half_track) / self._wheel_radius
         omega_right = (v + omega * self._half_track) / self._wheel_radius
         self._robot.step(omega_left, omega_right)
+
+    def place(self, x: float, y: float, theta: float) -> None:
+        """Start the FMU again from there; its noise starts again too."""
+        asked, start = (x, y, theta), self._parameters.start
+        x, y, theta = (
+            there if math.isnan(each) else each for each, there in zip(asked, start, strict=True)
+        )
+        self._robot.reset(replace(self._parameters, start=(x, y, theta)))

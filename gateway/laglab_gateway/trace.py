@@ -11,7 +11,8 @@ from laglab_gateway.errors import TraceError
 
 
 class TraceRow(NamedTuple):
-    """Tick k: pose, sample z_k, estimate of k (None without a filter), u_k as sent, u in force."""
+    """Tick k: pose, sample z_k, estimate of k (None without a filter), u_k as sent (None when it
+    had not come by the end of the tick), u in force."""
 
     tick: int
     time: float
@@ -24,8 +25,8 @@ class TraceRow(NamedTuple):
     x_est: float | None
     y_est: float | None
     theta_est: float | None
-    v_sent: float
-    omega_sent: float
+    v_sent: float | None
+    omega_sent: float | None
     v: float
     omega: float
 
@@ -36,9 +37,15 @@ Trace: TypeAlias = dict[str, NDArray[np.float64]]
 HEADER = ",".join(TraceRow._fields) + "\n"
 
 
-def format_row(row: TraceRow) -> str:
-    """``repr`` of a float is the shortest text that reads back to the same double."""
-    return ",".join("" if cell is None else repr(cell) for cell in row) + "\n"
+def format_row(row: tuple[int | float | str | None, ...]) -> str:
+    """`repr` of a float is the shortest text that reads back to the same double."""
+    return ",".join(map(_format_cell, row)) + "\n"
+
+
+def _format_cell(cell: float | str | None) -> str:
+    if cell is None:
+        return ""
+    return cell if isinstance(cell, str) else repr(cell)
 
 
 def read_trace(path: Path) -> Trace:

@@ -8,7 +8,7 @@ from laglab.commands import bench, compare, errata, fmu, run, scenarios, sides
 from laglab.errors import LaglabError, RunError, ScenarioError
 from laglab.processes import SIDE_ERRORS
 from laglab_controller import StationError
-from laglab_gateway import CommandError, StationSilentError
+from laglab_gateway import StationSilentError
 from laglab_protocol import FarEndGoneError, FarEndStalledError
 
 app = typer.Typer(
@@ -27,7 +27,7 @@ app.command("controller")(sides.controller)
 app.add_typer(bench.app, name="bench")
 app.add_typer(fmu.app, name="fmu")
 
-LINK_LOST = (StationError, StationSilentError, CommandError, FarEndGoneError, FarEndStalledError)
+LINK_LOST = (StationError, StationSilentError, FarEndGoneError, FarEndStalledError)
 """What ends a run that had begun; the other errors of a side are the user's to mend."""
 
 

@@ -38,6 +38,8 @@ OVERRIDES: dict[str, Any] = {
     "goal_tolerance": Annotated[
         float | None, _option("--goal-tolerance", help="Turn on the spot inside it [m].")
     ],
+    "pace": Annotated[str | None, _option("--pace", help="lockstep, or realtime.")],
+    "speed": Annotated[float | None, _option("--speed", help="Real time so many times as fast.")],
     "fmi": Annotated[int | None, _option("--fmi", help="The FMU's FMI version, 2 or 3.")],
 }
 """Scenario field → its command-line option."""

@@ -9,12 +9,13 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 from time import monotonic
+from typing import Any
 
 from laglab.scenario import Scenario
-from laglab.sides import open_gateway, station_config
+from laglab.sides import open_gateway, serve, station_config
 from laglab_controller import Station, StationError, run_station
 from laglab_fmu import FmuError
-from laglab_gateway import FileRecorder, GatewayError, Outcome, Patience, serve
+from laglab_gateway import FileRecorder, GatewayError, Outcome, Patience
 from laglab_protocol import ProtocolError, open_endpoint
 
 SIDE_ERRORS = (FmuError, GatewayError, StationError, ProtocolError)
@@ -44,6 +45,7 @@ class Finished:
 
     outcome: Outcome
     loop_seconds: float
+    statistics: dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -87,8 +89,9 @@ def gateway_process(scenario: Scenario, url: str, directory: Path, reports: Conn
             open_endpoint(url) as endpoint,
         ):
             reports.send(Listening(endpoint.name))
-            outcome = serve(gateway, endpoint, recorder, Patience(connect=30.0), clock)
-        reports.send(Finished(outcome, clock.seconds))
+            patience = Patience(connect=30.0)
+            outcome, statistics = serve(scenario, gateway, endpoint, recorder, patience, clock)
+        reports.send(Finished(outcome, clock.seconds, statistics))
     except SIDE_ERRORS as error:
         reports.send(Failed(str(error)))
 

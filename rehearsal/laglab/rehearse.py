@@ -6,7 +6,7 @@ from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from multiprocessing.connection import wait
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from laglab.inline import InlineEndpoint
 from laglab.processes import (
@@ -23,9 +23,9 @@ from laglab.processes import (
     station_process,
 )
 from laglab.scenario import Scenario
-from laglab.sides import open_gateway, station_config
+from laglab.sides import open_gateway, serve, station_config
 from laglab_controller import Station
-from laglab_gateway import FileRecorder, Outcome, Patience, serve
+from laglab_gateway import FileRecorder, Outcome, Patience
 
 Transport = Literal["inline", "udp", "serial"]
 
@@ -41,6 +41,7 @@ class Ending:
     outcome: Outcome | None
     problem: str | None
     loop_seconds: float
+    statistics: dict[str, Any]
 
 
 def rehearse(
@@ -60,10 +61,10 @@ def _inline(scenario: Scenario, directory: Path, progress: Callable[[int], None]
     try:
         with open_gateway(scenario) as gateway, closing(FileRecorder(directory)) as recorder:
             endpoint = InlineEndpoint(Station(station_config(scenario)))
-            outcome = serve(gateway, endpoint, recorder, Patience(), clock)
+            outcome, statistics = serve(scenario, gateway, endpoint, recorder, Patience(), clock)
     except SIDE_ERRORS as error:
-        return Ending(None, str(error), clock.seconds)
-    return Ending(outcome, None, clock.seconds)
+        return Ending(None, str(error), clock.seconds, {})
+    return Ending(outcome, None, clock.seconds, statistics)
 
 
 @contextmanager
@@ -117,14 +118,14 @@ def _follow(gateway: Side, station: Side, progress: Callable[[int], None]) -> En
                     progress(tick)
                 case report:
                     return _ending(report, problems, loop_seconds)
-    return Ending(None, "; ".join(problems), loop_seconds)
+    return Ending(None, "; ".join(problems), loop_seconds, {})
 
 
 def _ending(report: Report, problems: list[str], loop_seconds: float) -> Ending:
     match report:
-        case Finished(outcome, seconds):
-            return Ending(outcome, None, seconds)
+        case Finished(outcome, seconds, statistics):
+            return Ending(outcome, None, seconds, statistics)
         case Failed(reason):
-            return Ending(None, "; ".join([reason, *problems]), loop_seconds)
+            return Ending(None, "; ".join([reason, *problems]), loop_seconds, {})
         case _:
             raise AssertionError(f"{report} ends no run")

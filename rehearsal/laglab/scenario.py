@@ -25,6 +25,7 @@ from pydantic import (
 
 from laglab.errors import ScenarioError
 from laglab_controller import ESTIMATORS
+from laglab_gateway import IDEAL, Event, Impairments, Safety
 
 SHIPPED = resources.files("laglab") / "scenarios"
 
@@ -45,6 +46,18 @@ Pose = Annotated[
 """x [m], y [m], theta [rad]; on the command line ``X,Y,THETA``."""
 Positive = Annotated[FiniteFloat, Field(gt=0)]
 Variance = Annotated[FiniteFloat, Field(ge=0)]
+
+
+class LinkScenario(BaseModel):
+    """What the link does besides the two delays, each direction on its own; ideal by default."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    command: Impairments = IDEAL
+    measurement: Impairments = IDEAL
+    event: tuple[Event, ...] = ()
+    replay: str | None = None
+    """The `link.csv` of an earlier run, whose frames' fates are to come true again."""
 
 
 class Scenario(BaseModel):
@@ -79,6 +92,10 @@ class Scenario(BaseModel):
     track: Positive = 0.6
     wheel_noise_variance: Variance = 0.01
     measurement_variance: tuple[Positive, Positive, Positive] = (0.01, 0.01, 0.018)
+    pace: Literal["lockstep", "realtime"] = "lockstep"
+    speed: Positive = 1.0
+    link: LinkScenario = LinkScenario()
+    safety: Safety = Safety()
 
     @field_validator("estimator")
     @classmethod
@@ -116,12 +133,14 @@ class Scenario(BaseModel):
 
     def to_toml(self) -> str:
         """The scenario as a file that ``load`` reads back to an equal one."""
-        fields = self.model_dump(by_alias=True, exclude_none=True)
-        return tomlkit.dumps({key: _plain(value) for key, value in fields.items()})
+        return tomlkit.dumps(_plain(self.model_dump(by_alias=True, exclude_none=True)))
 
 
 def _plain(value: Any) -> Any:
-    return list(value) if isinstance(value, tuple) else value
+    """Without tuples, which TOML does not have."""
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    return [_plain(item) for item in value] if isinstance(value, list | tuple) else value
 
 
 def shipped() -> dict[str, Scenario]:
@@ -163,13 +182,18 @@ def _read(reference: str) -> tuple[dict[str, object], str]:
         raise ScenarioError(f"{reference}: not a readable TOML file: {error}") from None
 
 
+def _without_branches(location: tuple[int | str, ...]) -> tuple[int | str, ...]:
+    """The keys as they stand in the file, less what names a union's branch."""
+    return location[:1] if location[:1] == ("initial_estimate",) else location
+
+
 def _first_problem(error: ValidationError) -> str:
     problem = error.errors()[0]
-    field = ".".join(str(part) for part in problem["loc"][:1])
+    field = ".".join(str(part) for part in _without_branches(problem["loc"]))
     match problem["type"]:
         case "extra_forbidden":
             known = ", ".join(info.alias or key for key, info in Scenario.model_fields.items())
-            return f"{field}: unknown key; known: {known}"
+            return f"{field}: unknown key" + (f"; known: {known}" if "." not in field else "")
         case "value_error":
             text = str(problem["ctx"]["error"])
         case _:

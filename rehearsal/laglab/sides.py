@@ -1,14 +1,33 @@
 """The two sides of a rehearsal, each made from the scenario alone."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from laglab.scenario import Scenario
 from laglab_controller import Law, RobotModel, StationConfig
 from laglab_fmu import Robot, RobotParameters
-from laglab_gateway import FmuPlant, Gateway, GatewayConfig
+from laglab_gateway import (
+    IDEAL,
+    Direction,
+    Fates,
+    FmuPlant,
+    Gateway,
+    GatewayConfig,
+    Link,
+    Outcome,
+    Patience,
+    RandomFates,
+    RecordedFates,
+    Recorder,
+    Watch,
+    read_link_log,
+    serve_lockstep,
+    serve_realtime,
+)
 
 
 def robot_parameters(scenario: Scenario) -> RobotParameters:
@@ -28,15 +47,55 @@ def robot_parameters(scenario: Scenario) -> RobotParameters:
 @contextmanager
 def open_gateway(scenario: Scenario) -> Iterator[Gateway]:
     """The robot's side, its FMU loaded until the context ends."""
-    with Robot.open(scenario.fmi, robot_parameters(scenario)) as robot:
-        plant = FmuPlant(robot, scenario.wheel_radius, scenario.track)
+    parameters = robot_parameters(scenario)
+    with Robot.open(scenario.fmi, parameters) as robot:
+        plant = FmuPlant(robot, parameters)
         config = GatewayConfig(
             command_delay=scenario.command_delay,
             measurement_delay=scenario.measurement_delay,
             last_tick=scenario.last_tick,
             sample_time=scenario.sample_time,
+            safety=scenario.safety,
         )
-        yield Gateway(plant, config)
+        yield Gateway(plant, config, link_fates(scenario))
+
+
+DIRECTIONS: tuple[Direction, ...] = ("command", "measurement")
+
+
+def link_fates(scenario: Scenario) -> dict[Direction, Fates]:
+    """What decides over the frames of each direction that is not ideal, seeded by the scenario."""
+    if scenario.link.replay is not None:
+        log = Path(scenario.link.replay)
+        return {direction: RecordedFates(read_link_log(log, direction)) for direction in DIRECTIONS}
+    fates: dict[Direction, Fates] = {}
+    for number, direction in enumerate(DIRECTIONS):
+        impairments = getattr(scenario.link, direction)
+        events = [event for event in scenario.link.event if event.concerns(direction)]
+        if impairments != IDEAL or events:
+            rng = np.random.default_rng((scenario.seed, number))
+            fates[direction] = RandomFates(impairments, events, rng)
+    return fates
+
+
+def serve(
+    scenario: Scenario,
+    gateway: Gateway,
+    endpoint: Link,
+    recorder: Recorder,
+    patience: Patience,
+    progress: Callable[[int], None],
+) -> tuple[Outcome, dict[str, Any]]:
+    """Run the robot's side at the scenario's pace: how it ended, and what the stamps tell."""
+    watch = Watch(gateway.services, [])
+    if scenario.pace == "lockstep":
+        outcome = serve_lockstep(gateway, endpoint, recorder, patience, watch, progress)
+        return outcome, {"link": gateway.audit.report()}
+    period = scenario.sample_time / scenario.speed
+    outcome, lateness = serve_realtime(
+        gateway, endpoint, recorder, patience, watch, progress, period
+    )
+    return outcome, {"link": gateway.audit.report(), "timing": lateness.report()}
 
 
 def robot_model(scenario: Scenario) -> RobotModel:

@@ -87,6 +87,7 @@ def summarise(
         "converged": completed and has_converged(trace, scenario),
         "wall_time_s": ending.loop_seconds,
         "real_time_factor": simulated / ending.loop_seconds if ending.loop_seconds else None,
+        **ending.statistics,
     }
     summary["verdict"] = _verdict(ending, summary)
     return summary

@@ -6,9 +6,9 @@ import numpy as np
 
 from laglab.inline import InlineEndpoint
 from laglab.scenario import Scenario
-from laglab.sides import open_gateway, station_config
+from laglab.sides import open_gateway, serve, station_config
 from laglab_controller import Controller, Station, StationConfig
-from laglab_gateway import NoRecorder, Patience, Trace, TraceRow, serve
+from laglab_gateway import NoRecorder, Patience, Trace, TraceRow
 
 
 class _TraceKeeper(NoRecorder):
@@ -29,7 +29,7 @@ def run_trial(
     keeper = _TraceKeeper()
     endpoint = InlineEndpoint(Station(station_config(scenario), controller))
     with open_gateway(scenario) as gateway:
-        serve(gateway, endpoint, keeper, Patience(), lambda _: None)
+        serve(scenario, gateway, endpoint, keeper, Patience(), lambda _: None)
     columns = np.array(keeper.rows, dtype=np.float64).T
     return dict(zip(TraceRow._fields, columns, strict=True))
 

@@ -171,4 +171,4 @@ def test_nothing_is_left_behind(
 
 def test_initialize_reports_what_the_fmu_logged() -> None:
     with Robot.open(3, QUIET) as robot, pytest.raises(CallError, match="cannot be set now"):
-        initialize(robot._slave, QUIET)
+        initialize(robot._slave, [QUIET])

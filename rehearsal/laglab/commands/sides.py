@@ -10,9 +10,9 @@ from rich.console import Console
 from laglab.commands.run import EXIT_CODES, progress_bar
 from laglab.options import on_scenario
 from laglab.scenario import Scenario
-from laglab.sides import open_gateway, station_config
+from laglab.sides import open_gateway, serve, station_config
 from laglab_controller import Station, run_station
-from laglab_gateway import FileRecorder, NoRecorder, Patience, serve
+from laglab_gateway import FileRecorder, NoRecorder, Patience
 from laglab_protocol import EndReason, open_endpoint
 
 ENDPOINT_HELP = "udpin://HOST:PORT, udpout://HOST:PORT, serial:///dev/ttyX:BAUD or pty://PATH."
@@ -36,8 +36,13 @@ def gateway(
         console.print(f"listening on {link.name}", highlight=False, soft_wrap=True)
         with progress_bar() as bar:
             task = bar.add_task(scenario.name, total=scenario.last_tick)
-            outcome = serve(
-                core, link, recorder, Patience(), lambda tick: bar.update(task, completed=tick)
+            outcome, _ = serve(
+                scenario,
+                core,
+                link,
+                recorder,
+                Patience(),
+                lambda tick: bar.update(task, completed=tick),
             )
     console.print(f"{outcome.reason.name.lower()} at tick {outcome.tick}", highlight=False)
     raise typer.Exit(EXIT_CODES[outcome.reason])

@@ -1,0 +1,126 @@
+"""One gateway's talk with its station over one endpoint: what every pace has in common."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from time import monotonic
+from typing import Protocol
+
+from laglab_gateway.core import Gateway, Outcome, from_station
+from laglab_gateway.errors import StationSilentError
+from laglab_gateway.recorder import Recorder
+from laglab_gateway.watch import Watch
+
+END_TRIES = 5
+"""A lost END only costs the station its silence timeout, so a few tries are enough."""
+
+
+@dataclass(frozen=True)
+class Patience:
+    """How long to wait, all in wall seconds; `connect` None waits for the station for ever."""
+
+    repeat_after: float = 0.1
+    silence: float = 3.0
+    connect: float | None = None
+
+
+class Link(Protocol):
+    """What the loops need of an endpoint."""
+
+    @property
+    def datagrams(self) -> bool:
+        """Whether `receive` gives whole datagrams."""
+
+    def send(self, data: bytes) -> None:
+        """To the station."""
+
+    def receive(self, timeout: float) -> bytes:
+        """From the station; nothing when nothing came within `timeout` [s]."""
+
+    def accept_peer(self) -> None:
+        """The last bytes came from the station itself: from now on send there."""
+
+
+class Conversation:
+    """Sends, listens, records, and knows since when the station is silent."""
+
+    def __init__(
+        self,
+        gateway: Gateway,
+        endpoint: Link,
+        recorder: Recorder,
+        patience: Patience,
+        watch: Watch,
+        now: Callable[[], float] = monotonic,
+    ) -> None:
+        self.now = now
+        self._gateway = gateway
+        self._endpoint = endpoint
+        self._recorder = recorder
+        self._patience = patience
+        self._watch = watch
+        self._heard = now()
+
+    def wait_for_station(self) -> None:
+        """Until the station's first heartbeat. Raises StationSilentError."""
+        started = self.now()
+        while not self._gateway.connected:
+            self.listen(self._patience.repeat_after)
+            waited = self.now() - started
+            if self._patience.connect is not None and waited > self._patience.connect:
+                raise StationSilentError(None, waited)
+
+    def send(self, frames: list[bytes]) -> None:
+        """Send whole frames as one datagram."""
+        self._recorder.frames(self._gateway.time_us, frames)
+        self._endpoint.send(b"".join(frames))
+
+    def listen(self, timeout: float) -> None:
+        """Take what arrives, for at most `timeout` [s]."""
+        data = self._endpoint.receive(timeout)
+        # A silence ends an unfinished frame on a stream as the datagram's end does on UDP.
+        frames = self._gateway.receive(data, whole=self._endpoint.datagrams or not data)
+        if any(from_station(frame) for frame in frames):
+            self._endpoint.accept_peer()
+            self._heard = self.now()
+        self._recorder.frames(self._gateway.time_us, [frame.raw for frame in frames])
+        self._reply()
+        if not data:
+            self._watch.poll(self._gateway.state)
+
+    def _reply(self) -> None:
+        if replies := self._gateway.take_replies():
+            self.send(replies)
+
+    def listen_for(self, done: Callable[[], bool]) -> bool:
+        """Listen until `done`, or until it is time to repeat: then False."""
+        deadline = self.now() + self._patience.repeat_after
+        while not done():
+            if self.now() > deadline:
+                return False
+            self.listen(self._patience.repeat_after)
+        return True
+
+    def check_silence(self) -> None:
+        """Raises StationSilentError when the station has been silent for longer than allowed."""
+        silence = self.now() - self._heard
+        if silence > self._patience.silence:
+            raise StationSilentError(self._gateway.tick, silence)
+
+    def finish_tick(self) -> int:
+        """Close the tick, record it, tell everybody of what the robot did; returns the tick."""
+        row = self._gateway.close_tick()
+        self._recorder.row(row)
+        if rows := self._gateway.take_link_rows():
+            self._recorder.link(rows)
+        if notices := self._gateway.take_notices():
+            self._watch.tell(notices)
+            self._reply()
+        self._watch.poll(self._gateway.state)
+        return row.tick
+
+    def say_goodbye(self, outcome: Outcome) -> None:
+        """Tell the station, and give it a few chances to say that it heard."""
+        for _ in range(END_TRIES):
+            self.send([self._gateway.end(outcome.reason)])
+            if self.listen_for(lambda: self._gateway.station_end is not None):
+                return

@@ -1,0 +1,96 @@
+"""Which command the robot follows: a state machine without clock, one state a tick.
+
+    WAITING    no command yet: the robot stands still
+    DRIVING    the newest command is in force
+    STOPPING   no fresh command for `link_timeout`: the speeds ramp to 0 and stay there
+
+A fresh command, one that is newer than the one in force, finite and within the limits, leads from
+every mode to DRIVING.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from enum import Enum, auto
+
+from laglab_gateway.impairments import STRICT, NotNegative, Seconds
+from laglab_protocol import NO_COMMAND, Command
+
+
+class Mode(Enum):
+    """See the table above."""
+
+    WAITING = auto()
+    DRIVING = auto()
+    STOPPING = auto()
+
+
+class Refusal(Enum):
+    """Why a command is not followed."""
+
+    NOT_FINITE = "not finite"
+    OUT_OF_LIMITS = "out of limits"
+    STALE = "stale"
+
+
+@dataclass(frozen=True)
+class Safety:
+    """Limits of the robot [m/s], [rad/s] (None: none), and the failsafe's times [s]."""
+
+    __pydantic_config__ = STRICT
+
+    v_limit: NotNegative | None = None
+    omega_limit: NotNegative | None = None
+    link_timeout: Seconds = 0.5
+    """Without a fresh command for this long the robot stops."""
+    ramp: Seconds = 0.5
+    """From the failsafe's start to standstill."""
+
+
+@dataclass(frozen=True)
+class Drive:
+    """What is in force at a tick. `fresh` is the tick at which the last command was accepted."""
+
+    mode: Mode = Mode.WAITING
+    v: float = 0.0
+    omega: float = 0.0
+    command_tick: int = NO_COMMAND
+    fresh: int = 0
+
+
+def refusal(drive: Drive, command: Command, safety: Safety) -> Refusal | None:
+    """Why `command` is not to be followed; None when it is."""
+    if not (math.isfinite(command.v) and math.isfinite(command.omega)):
+        return Refusal.NOT_FINITE
+    if _beyond(command.v, safety.v_limit) or _beyond(command.omega, safety.omega_limit):
+        return Refusal.OUT_OF_LIMITS
+    return Refusal.STALE if command.tick <= drive.command_tick else None
+
+
+def _beyond(value: float, limit: float | None) -> bool:
+    return limit is not None and abs(value) > limit
+
+
+def follow(command: Command, tick: int) -> Drive:
+    """A command that was not refused comes into force at `tick`."""
+    return Drive(Mode.DRIVING, command.v, command.omega, command.tick, tick)
+
+
+def supervise(drive: Drive, tick: int, sample_time: float, safety: Safety) -> Drive:
+    """The drive at `tick` if nothing fresh has come: after `link_timeout` it stops."""
+    if drive.mode is not Mode.DRIVING:
+        return drive
+    silent = (tick - drive.fresh) * sample_time
+    return replace(drive, mode=Mode.STOPPING) if silent >= safety.link_timeout else drive
+
+
+def speeds(drive: Drive, tick: int, sample_time: float, safety: Safety) -> tuple[float, float]:
+    """v [m/s] and ω [rad/s] in force on [t_tick, t_{tick+1})."""
+    match drive.mode:
+        case Mode.DRIVING:
+            return drive.v, drive.omega
+        case Mode.STOPPING:
+            since = (tick - drive.fresh) * sample_time - safety.link_timeout
+            share = max(0.0, 1 - since / safety.ramp) if safety.ramp else 0.0
+            return share * drive.v, share * drive.omega
+        case _:
+            return 0.0, 0.0

@@ -1,0 +1,90 @@
+"""The gateway's loop on the wall clock: ticks happen when they are due, answered or not.
+
+The deadline of tick k is start + k Ts / speed, never a sum of sleeps, so lateness does not add up.
+What has arrived by a deadline counts; the link's own delay adds to n and m, and the stamps tell.
+"""
+
+from collections.abc import Callable
+from time import monotonic
+from typing import Any
+
+import numpy as np
+
+from laglab_gateway.conversation import Conversation, Link, Patience
+from laglab_gateway.core import Gateway, Outcome
+from laglab_gateway.recorder import Recorder, TimingRow
+from laglab_gateway.watch import Watch
+from laglab_protocol import EndReason
+
+LONGEST_WAIT = 0.04
+"""[s] Longer waits are left to a kernel timer that is too coarse for a deadline."""
+
+
+class Lateness:
+    """How late each tick began [s], and how many began after the next one was due."""
+
+    def __init__(self, period: float) -> None:
+        self._period = period
+        self._seconds: list[float] = []
+
+    def add(self, seconds: float) -> None:
+        """One more tick."""
+        self._seconds.append(seconds)
+
+    def report(self) -> dict[str, Any]:
+        """For the summary; a deadline is missed when the tick began a whole period late."""
+        late = np.array(self._seconds or [np.nan])
+        p50, p99 = np.percentile(late, (50, 99))
+        return {
+            "p50_s": float(p50),
+            "p99_s": float(p99),
+            "max_s": float(late.max()),
+            "missed_deadlines": int((late > self._period).sum()),
+        }
+
+
+def serve_realtime(
+    gateway: Gateway,
+    endpoint: Link,
+    recorder: Recorder,
+    patience: Patience,
+    watch: Watch,
+    progress: Callable[[int], None],
+    period: float,
+    now: Callable[[], float] = monotonic,
+) -> tuple[Outcome, Lateness]:
+    """Run a gateway to its last tick, one tick every `period` [s] of the clock `now`.
+
+    Raises:
+        StationSilentError: the station never came, or fell silent for longer than allowed.
+        EndpointError: the link itself broke.
+    """
+    conversation = Conversation(gateway, endpoint, recorder, patience, watch, now)
+    lateness = Lateness(period)
+    try:
+        conversation.wait_for_station()
+        start = now()
+        while gateway.outcome is None:
+            deadline = start + gateway.tick * period
+            late = now() - deadline
+            lateness.add(late)
+            conversation.send(gateway.open_tick())
+            gateway.settle()
+            answer = _listen_until(deadline + period, gateway, conversation)
+            recorder.timing(TimingRow(gateway.tick, late, answer))
+            progress(conversation.finish_tick())
+            conversation.check_silence()
+    except KeyboardInterrupt:
+        gateway.outcome = Outcome(EndReason.INTERRUPTED, gateway.tick)
+    conversation.say_goodbye(gateway.outcome)
+    return gateway.outcome, lateness
+
+
+def _listen_until(deadline: float, gateway: Gateway, conversation: Conversation) -> float | None:
+    """Take what arrives before the deadline; the seconds until this tick's answer, if it came."""
+    began, answer = conversation.now(), None
+    while (left := deadline - conversation.now()) > 0:
+        conversation.listen(min(left, LONGEST_WAIT))
+        if answer is None and gateway.answered:
+            answer = conversation.now() - began
+    return answer

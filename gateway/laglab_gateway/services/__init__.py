@@ -1,0 +1,18 @@
+"""What a ground station expects of a rover: heartbeat, parameters, commands, telemetry."""
+
+from laglab_gateway.services.commands import Commands
+from laglab_gateway.services.parameters import Parameter, Parameters, standard_parameters
+from laglab_gateway.services.service import Services
+from laglab_gateway.services.state import Arming, RobotState
+from laglab_gateway.services.timesync import Timesyncing
+
+__all__ = [
+    "Arming",
+    "Commands",
+    "Parameter",
+    "Parameters",
+    "RobotState",
+    "Services",
+    "Timesyncing",
+    "standard_parameters",
+]

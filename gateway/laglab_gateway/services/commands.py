@@ -1,0 +1,90 @@
+"""Commands (MAV_CMD): every one that is meant for the robot is acknowledged."""
+
+import math
+from collections.abc import Callable
+
+from laglab_gateway.services.state import Arming
+from laglab_protocol import CommandAck, CommandInt, CommandLong, Frame, Message
+from laglab_protocol.generated import laglab as mavlink
+
+ACCEPTED: int = mavlink.MAV_RESULT_ACCEPTED
+REJECTED_FOR_NOW: int = mavlink.MAV_RESULT_TEMPORARILY_REJECTED
+DENIED: int = mavlink.MAV_RESULT_DENIED
+UNSUPPORTED: int = mavlink.MAV_RESULT_UNSUPPORTED
+
+Numbers = tuple[float, ...]
+"""param1 to param7; of COMMAND_INT the first four."""
+Result = tuple[int, list[Message]]
+"""MAV_RESULT, and what to say after the acknowledgement."""
+
+
+class Commands:
+    """Carries commands out. `report(id)` gives the message with this id, None if it has none;
+    `pace(id, interval_us)` sends it that often, False if it cannot."""
+
+    def __init__(
+        self,
+        arming: Arming,
+        report: Callable[[int], Message | None],
+        pace: Callable[[int, float], bool],
+    ) -> None:
+        self._arming = arming
+        self._report = report
+        self._pace = pace
+        self._handlers: dict[int, Callable[[Numbers], Result]] = {
+            mavlink.MAV_CMD_COMPONENT_ARM_DISARM: self._arm_or_disarm,
+            mavlink.MAV_CMD_DO_FLIGHTTERMINATION: self._emergency_stop,
+            mavlink.MAV_CMD_LAGLAB_RESET_POSE: self._reset_pose,
+            mavlink.MAV_CMD_REQUEST_MESSAGE: self._request_message,
+            mavlink.MAV_CMD_SET_MESSAGE_INTERVAL: self._set_interval,
+            mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: self._capabilities,
+        }
+
+    def answer(self, frame: Frame) -> list[Message]:
+        """The acknowledgement, and what the command asked to be told."""
+        message = frame.message
+        if not isinstance(message, CommandLong | CommandInt):
+            return []
+        numbers = message[:7] if isinstance(message, CommandLong) else message[:4]
+        handler = self._handlers.get(message.command)
+        result, more = handler(numbers) if handler else (UNSUPPORTED, [])
+        ack = CommandAck(message.command, result, 0, 0, frame.system, frame.component)
+        return [ack, *more]
+
+    def _arm_or_disarm(self, numbers: Numbers) -> Result:
+        if numbers[0] == 1.0:
+            return (ACCEPTED if self._arming.arm() else REJECTED_FOR_NOW), []
+        if numbers[0] == 0.0:
+            self._arming.disarm()
+            return ACCEPTED, []
+        return DENIED, []
+
+    def _emergency_stop(self, numbers: Numbers) -> Result:
+        if not numbers[0] > 0.5:
+            return DENIED, []
+        self._arming.stop()
+        return ACCEPTED, []
+
+    def _reset_pose(self, numbers: Numbers) -> Result:
+        if len(numbers) < 3 or any(map(math.isinf, numbers[:3])):
+            return DENIED, []
+        done = self._arming.reset((numbers[0], numbers[1], numbers[2]))
+        return (ACCEPTED if done else REJECTED_FOR_NOW), []
+
+    def _request_message(self, numbers: Numbers) -> Result:
+        message = self._report(_message_id(numbers[0]))
+        return (UNSUPPORTED, []) if message is None else (ACCEPTED, [message])
+
+    def _set_interval(self, numbers: Numbers) -> Result:
+        interval = numbers[1]
+        if not (math.isfinite(interval) and interval >= -1):
+            return DENIED, []
+        return (ACCEPTED if self._pace(_message_id(numbers[0]), interval) else UNSUPPORTED), []
+
+    def _capabilities(self, numbers: Numbers) -> Result:
+        del numbers
+        return self._request_message((float(mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION),))
+
+
+def _message_id(number: float) -> int:
+    return int(number) if math.isfinite(number) else -1

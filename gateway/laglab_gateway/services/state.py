@@ -1,0 +1,55 @@
+"""What the services know of the robot, and whether it may move."""
+
+import math
+from typing import NamedTuple
+
+
+class RobotState(NamedTuple):
+    """The robot at one tick: time since its start [us], pose [m, m, rad], speeds [m/s, rad/s]."""
+
+    time_us: int
+    x: float
+    y: float
+    theta: float
+    v: float
+    omega: float
+
+
+Pose = tuple[float, float, float]
+"""x, y, theta [m, m, rad]; NaN stands for the start pose's."""
+
+
+class Arming:
+    """Whether the robot may move. An emergency stop latches until the pose is reset."""
+
+    def __init__(self, armed: bool) -> None:
+        self.armed = armed
+        self.stopped = False
+        self.reset_to: Pose | None = None
+
+    def arm(self) -> bool:
+        """Let it move; False when an emergency stop is latched."""
+        self.armed = not self.stopped
+        return self.armed
+
+    def disarm(self) -> None:
+        """From now on it stands still."""
+        self.armed = False
+
+    def stop(self) -> None:
+        """Stand still at once, and stay so."""
+        self.armed = False
+        self.stopped = True
+
+    def reset(self, pose: Pose) -> bool:
+        """Ask for the robot to be put at `pose`; False while it may move."""
+        if self.armed or any(math.isinf(each) for each in pose):
+            return False
+        self.stopped = False
+        self.reset_to = pose
+        return True
+
+    def take_reset(self) -> Pose | None:
+        """The pose asked for since the last call; who calls puts the robot there."""
+        pose, self.reset_to = self.reset_to, None
+        return pose

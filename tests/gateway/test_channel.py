@@ -1,0 +1,165 @@
+"""One direction of the link: exact when ideal; seeded, recorded and repeatable when not."""
+
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from laglab_gateway import (
+    Burst,
+    Channel,
+    Event,
+    ExtraDelay,
+    FileRecorder,
+    Impairments,
+    RandomFates,
+    RecordedFates,
+    TimelineError,
+    read_link_log,
+)
+from laglab_protocol import Command
+
+TS = 0.01
+
+
+def command(tick: int) -> Command:
+    return Command(0.1 * tick, -0.2, tick, 1, 1, 0)
+
+
+def channel(link: Impairments, delay: int = 0, seed: int = 1, *events: Event) -> Channel[Command]:
+    fates = RandomFates(link, events, np.random.default_rng(seed))
+    return Channel("command", delay, TS, fates)
+
+
+def cross(line: Channel[Command], ticks: int, more: int = 100) -> list[tuple[int, int]]:
+    """(stamp, tick of arrival) of all that came out."""
+    out = []
+    for tick in range(ticks + more):
+        if tick < ticks:
+            line.push(tick, command(tick))
+        out += [(crossing.message.tick, tick) for crossing in line.due(tick)]
+    return out
+
+
+@given(delay=st.integers(0, 50), ticks=st.integers(1, 120))
+def test_an_ideal_channel_is_exact(delay: int, ticks: int) -> None:
+    line: Channel[Command] = Channel("command", delay, TS)
+    assert cross(line, ticks) == [(tick, tick + delay) for tick in range(ticks)]
+    assert line.log == []
+
+
+def test_a_negative_delay_is_refused() -> None:
+    with pytest.raises(ValueError, match="0 or more"):
+        Channel("command", -1, TS)
+
+
+@given(seed=st.integers(0, 2**31))
+def test_the_same_seed_gives_the_same_link(seed: int) -> None:
+    link = Impairments(
+        extra_delay=ExtraDelay("normal", 0.03, 0.02),
+        loss=0.1,
+        burst=Burst(0.05, 0.3),
+        reorder=0.1,
+        duplicate=0.1,
+        bit_error_rate=1e-4,
+        bandwidth=57_600,
+    )
+    lines = [channel(link, 5, seed) for _ in range(2)]
+    assert cross(lines[0], 50) == cross(lines[1], 50)
+    assert lines[0].log == lines[1].log
+
+
+def fates(line: Channel[Command]) -> Counter[str]:
+    return Counter(row.fate for row in line.log)
+
+
+def test_loss_is_as_frequent_as_told() -> None:
+    line = channel(Impairments(loss=0.2))
+    cross(line, 5000, 0)
+    assert fates(line)["lost"] == pytest.approx(1000, abs=4 * np.sqrt(5000 * 0.2 * 0.8))
+
+
+def test_bursts_lose_in_runs_of_the_length_told() -> None:
+    line = channel(Impairments(burst=Burst(good_to_bad=0.02, bad_to_good=0.25)))
+    cross(line, 20_000, 0)
+    lost = np.array([row.fate == "burst" for row in line.log])
+    runs = int((np.diff(lost.astype(int)) == 1).sum())
+    assert lost.mean() == pytest.approx(0.02 / 0.27, rel=0.15)
+    assert lost.sum() / runs == pytest.approx(4.0, rel=0.15)
+
+
+def test_extra_delay_comes_on_top_of_the_fixed_one() -> None:
+    arrived = cross(channel(Impairments(extra_delay=ExtraDelay("uniform", 0.05, 0.03)), 7), 2000)
+    late = np.array([tick - stamp - 7 for stamp, tick in arrived])
+    assert len(arrived) == 2000
+    assert late.min() == 3
+    assert late.max() == 8
+    assert late.mean() == pytest.approx(5.5, abs=0.1)
+
+
+def test_a_frame_held_back_is_overtaken() -> None:
+    arrived = cross(channel(Impairments(reorder=0.1, reorder_by=0.03)), 500)
+    stamps = [stamp for stamp, _ in arrived]
+    assert sorted(stamps) == list(range(500))
+    assert stamps != sorted(stamps)
+    assert {tick - stamp for stamp, tick in arrived} == {0, 3}
+
+
+def test_duplicates_come_twice() -> None:
+    stamps = Counter(stamp for stamp, _ in cross(channel(Impairments(duplicate=0.3)), 500))
+    assert set(stamps.values()) == {1, 2}
+    assert sum(stamps.values()) == pytest.approx(650, abs=45)
+
+
+def test_bit_errors_lose_what_the_crc_catches() -> None:
+    line = channel(Impairments(bit_error_rate=1e-3))
+    arrived = cross(line, 1000)
+    bits = 8 * line.log[0].size
+    assert fates(line)["corrupted"] == pytest.approx(1000 * (1 - 0.999**bits), rel=0.2)
+    assert len(arrived) == fates(line)["delivered"]
+
+
+def test_bandwidth_queues_and_the_full_queue_drops_the_tail() -> None:
+    size = 34
+    line = channel(Impairments(bandwidth=size * 8 * 50, queue=10 * size))
+    arrived = cross(line, 200, 100)
+    assert {row.size for row in line.log} == {size}
+    assert fates(line)["queue-full"] == pytest.approx(200 - 100 - 9, abs=1)
+    assert max(tick - stamp for stamp, tick in arrived) == 19
+    assert [stamp for stamp, _ in arrived] == sorted(stamp for stamp, _ in arrived)
+
+
+def test_outages_and_events_come_and_go_at_their_times() -> None:
+    event = Event(at=1.0, duration=0.5, link=Impairments(loss=1.0), direction="command")
+    line = channel(Impairments(outages=((0.2, 0.1),)), 0, 1, event)
+    stamps = {stamp for stamp, _ in cross(line, 200)}
+    assert set(range(200)) - stamps == {*range(20, 30), *range(100, 150)}
+    assert not event.concerns("measurement")
+
+
+def test_a_log_replays_to_the_same_link_on_another_run(tmp_path: Path) -> None:
+    link = Impairments(
+        ExtraDelay("exponential", 0.02), loss=0.2, duplicate=0.2, bit_error_rate=1e-3
+    )
+    line = channel(link, 4)
+    first = cross(line, 300)
+    recorder = FileRecorder(tmp_path)
+    recorder.link(line.log)
+    recorder.close()
+    rows = read_link_log(tmp_path / "link.csv", "command")
+    assert rows == line.log
+    again: Channel[Command] = Channel("command", 4, TS, RecordedFates(rows))
+    assert cross(again, 300) == first
+    assert again.log == line.log
+    assert read_link_log(tmp_path / "link.csv", "measurement") == []
+
+
+@pytest.mark.parametrize("text", ["", "a,b\n", "direction\ncommand\n", "\0"])
+def test_what_is_no_link_log_is_refused_by_name(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "other.csv"
+    path.write_text(text)
+    with pytest.raises(TimelineError, match=r"other\.csv"):
+        read_link_log(path, "command")

@@ -1,0 +1,386 @@
+"""The rover's services, told frame by frame: no socket, no clock."""
+
+import itertools
+import math
+from collections.abc import Callable
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from laglab_gateway.services import (
+    Parameter,
+    RobotState,
+    Services,
+    Timesyncing,
+    standard_parameters,
+)
+from laglab_gateway.services.telemetry import REPORTS, to_ned
+from laglab_protocol import (
+    AutopilotVersion,
+    Command,
+    CommandAck,
+    CommandInt,
+    CommandLong,
+    Frame,
+    Heartbeat,
+    LocalPositionNed,
+    Message,
+    Odometry,
+    ParamError,
+    ParamRequestList,
+    ParamRequestRead,
+    ParamSet,
+    ParamValue,
+    Ping,
+    Receiver,
+    Sender,
+    Timesync,
+    message_type,
+)
+from laglab_protocol.generated import laglab as mavlink
+
+STATE = RobotState(1_500_000, 3.0, 4.0, 0.0, 2.0, 0.5)
+GCS = (255, 190)
+REAL32 = mavlink.MAV_PARAM_TYPE_REAL32
+
+
+@pytest.fixture
+def services() -> Services:
+    others = [Parameter("LAW_GAMMA", 3.0), Parameter("TRIES", 2, True, 1, 9, whole=True)]
+    return Services(standard_parameters(10, 20, others), armed=False)
+
+
+def frame(message: Message, sender: tuple[int, int] = GCS) -> Frame:
+    return Frame(message, *sender, 0, b"")
+
+
+def ask(services: Services, message: Message) -> list[Message]:
+    return services.answer(frame(message), STATE)
+
+
+def command(number: int, *numbers: float, target: tuple[int, int] = (1, 1)) -> CommandLong:
+    padded = (*numbers, *[0.0] * (7 - len(numbers)))
+    return CommandLong(*padded, number, *target, 0)
+
+
+def result(services: Services, number: int, *numbers: float) -> int:
+    ack, *_ = ask(services, command(number, *numbers))
+    assert isinstance(ack, CommandAck)
+    assert (ack.command, ack.target_system, ack.target_component) == (number, *GCS)
+    return ack.result
+
+
+ARM, STOP, RESET = 400, 185, mavlink.MAV_CMD_LAGLAB_RESET_POSE
+
+
+# Parameters
+
+
+def test_all_parameters_are_listed_in_order(services: Services) -> None:
+    values = ask(services, ParamRequestList(1, 1))
+
+    assert [each.param_id for each in values] == [  # type: ignore[attr-defined]
+        b"DELAY_N",
+        b"DELAY_M",
+        b"V_MAX",
+        b"OMEGA_MAX",
+        b"LAW_GAMMA",
+        b"TRIES",
+    ]
+    assert values[1] == ParamValue(20.0, 6, 1, b"DELAY_M", REAL32)
+
+
+@pytest.mark.parametrize(("index", "name"), [(1, b""), (-1, b"DELAY_M"), (1, b"ignored")])
+def test_one_parameter_is_read_by_index_or_name(
+    services: Services, index: int, name: bytes
+) -> None:
+    assert ask(services, ParamRequestRead(index, 1, 1, name)) == [
+        ParamValue(20.0, 6, 1, b"DELAY_M", REAL32)
+    ]
+
+
+def set_parameter(services: Services, name: bytes, value: float) -> list[Message]:
+    return ask(services, ParamSet(value, 1, 1, name, REAL32))
+
+
+def test_a_safe_parameter_is_set(services: Services) -> None:
+    (answer,) = set_parameter(services, b"V_MAX", 0.5)
+
+    assert answer == ParamValue(0.5, 6, 2, b"V_MAX", REAL32)
+    assert services.parameters["V_MAX"] == 0.5
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "error"),
+    [
+        (b"DELAY_N", 5.0, mavlink.MAV_PARAM_ERROR_READ_ONLY),
+        (b"LAW_GAMMA", 5.0, mavlink.MAV_PARAM_ERROR_READ_ONLY),
+        (b"V_MAX", -1.0, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE),
+        (b"V_MAX", math.nan, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE),
+        (b"V_MAX", math.inf, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE),
+        (b"TRIES", 2.5, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE),
+    ],
+)
+def test_a_refused_setting_says_why_and_what_holds(
+    services: Services, name: bytes, value: float, error: int
+) -> None:
+    held = services.parameters[name.decode()]
+    refusal, answer = set_parameter(services, name, value)
+
+    assert refusal == ParamError(-1, *GCS, name, error)
+    assert isinstance(answer, ParamValue)
+    assert answer.param_value == held == services.parameters[name.decode()]
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        ParamRequestRead(-1, 1, 1, b"NOTHING"),
+        ParamRequestRead(6, 1, 1, b""),
+        ParamRequestRead(-2, 1, 1, b""),
+        ParamSet(1.0, 1, 1, b"\xff\xfe", REAL32),
+    ],
+)
+def test_what_does_not_exist_is_said(services: Services, message: Message) -> None:
+    (answer,) = ask(services, message)
+
+    assert isinstance(answer, ParamError)
+    assert answer.error == mavlink.MAV_PARAM_ERROR_DOES_NOT_EXIST
+
+
+# Commands
+
+
+def test_arming_lets_the_robot_move(services: Services) -> None:
+    assert services.allow(1.0, 2.0) == (0.0, 0.0)
+    assert result(services, ARM, 1.0) == mavlink.MAV_RESULT_ACCEPTED
+    assert services.allow(1.0, 2.0) == (1.0, 2.0)
+    assert result(services, ARM, 0.0) == mavlink.MAV_RESULT_ACCEPTED
+    assert services.allow(1.0, 2.0) == (0.0, 0.0)
+
+
+def test_limits_hold(services: Services) -> None:
+    services.arming.arm()
+    set_parameter(services, b"V_MAX", 0.5)
+    set_parameter(services, b"OMEGA_MAX", 0.25)
+
+    assert services.allow(1.0, -2.0) == (0.5, -0.25)
+
+
+def test_an_emergency_stop_latches_until_the_pose_is_reset(services: Services) -> None:
+    services.arming.arm()
+    assert result(services, STOP, 1.0) == mavlink.MAV_RESULT_ACCEPTED
+    assert services.allow(1.0, 2.0) == (0.0, 0.0)
+    assert result(services, ARM, 1.0) == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
+    assert result(services, RESET, 1.0, 2.0, math.nan) == mavlink.MAV_RESULT_ACCEPTED
+
+    x, y, theta = services.arming.take_reset() or (0, 0, 0)
+    assert (x, y) == (1.0, 2.0)
+    assert math.isnan(theta)
+    assert services.arming.take_reset() is None
+    assert result(services, ARM, 1.0) == mavlink.MAV_RESULT_ACCEPTED
+
+
+def test_the_pose_is_not_reset_under_way(services: Services) -> None:
+    services.arming.arm()
+
+    assert result(services, RESET, 0.0, 0.0, 0.0) == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
+    assert services.arming.take_reset() is None
+
+
+@pytest.mark.parametrize(
+    ("number", "numbers", "expected"),
+    [
+        (ARM, (2.0,), mavlink.MAV_RESULT_DENIED),
+        (ARM, (math.nan,), mavlink.MAV_RESULT_DENIED),
+        (STOP, (0.0,), mavlink.MAV_RESULT_DENIED),
+        (RESET, (math.inf, 0.0, 0.0), mavlink.MAV_RESULT_DENIED),
+        (512, (24.0,), mavlink.MAV_RESULT_UNSUPPORTED),
+        (512, (math.nan,), mavlink.MAV_RESULT_UNSUPPORTED),
+        (511, (32.0, math.nan), mavlink.MAV_RESULT_DENIED),
+        (511, (24.0, 1e6), mavlink.MAV_RESULT_UNSUPPORTED),
+        (22, (), mavlink.MAV_RESULT_UNSUPPORTED),
+        (65535, (), mavlink.MAV_RESULT_UNSUPPORTED),
+    ],
+)
+def test_every_command_is_acknowledged(
+    services: Services, number: int, numbers: tuple[float, ...], expected: int
+) -> None:
+    assert result(services, number, *numbers) == expected
+
+
+def test_command_int_is_acknowledged_too(services: Services) -> None:
+    (ack,) = ask(services, CommandInt(1.0, 0.0, 0.0, 0.0, 0, 0, 0.0, ARM, 1, 1, 0, 0, 0))
+
+    assert isinstance(ack, CommandAck)
+    assert ack.result == mavlink.MAV_RESULT_ACCEPTED
+
+
+@pytest.mark.parametrize("target", [(2, 1), (1, 2), (200, 190)])
+def test_what_is_meant_for_others_is_passed_over(
+    services: Services, target: tuple[int, int]
+) -> None:
+    assert ask(services, command(ARM, 1.0, target=target)) == []
+    assert ask(services, ParamRequestList(*target)) == []
+    assert not services.arming.armed
+
+
+def test_a_command_of_motion_is_no_service(services: Services) -> None:
+    services.arming.arm()
+
+    assert ask(services, Command(1.0, 1.0, 0, 1, 1, 0)) == []
+
+
+@pytest.mark.parametrize("number", REPORTS)
+def test_every_report_may_be_requested(services: Services, number: int) -> None:
+    ack, report = ask(services, command(512, float(number)))
+
+    assert ack == CommandAck(512, mavlink.MAV_RESULT_ACCEPTED, 0, 0, *GCS)
+    assert type(report) is message_type(mavlink.mavlink_map[number].msgname)
+    (sent,) = Receiver().receive(Sender(1, 1).frame(report))
+    assert type(sent.message) is type(report)
+
+
+def test_the_version_is_told_by_the_old_command_too(services: Services) -> None:
+    _, version = ask(services, command(520, 1.0))
+
+    assert isinstance(version, AutopilotVersion)
+    assert version.capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
+
+
+# Ping and time
+
+
+def test_a_ping_is_answered_and_an_answer_is_not(services: Services) -> None:
+    assert ask(services, Ping(7, 8, 0, 0)) == [Ping(7, 8, *GCS)]
+    assert ask(services, Ping(7, 8, 1, 1)) == []
+
+
+def test_in_simulated_time_clocks_are_not_compared(services: Services) -> None:
+    assert ask(services, Timesync(0, 123)) == []
+
+
+def test_a_question_of_time_is_answered() -> None:
+    services = Services(standard_parameters(0, 0), timesync=Timesyncing(lambda: 1000))
+
+    assert ask(services, Timesync(0, 123)) == [Timesync(1000, 123)]
+
+
+@given(st.integers(-(10**15), 10**15), st.integers(0, 10**9), st.integers(0, 10**9))
+def test_offset_and_round_trip(offset: int, there: int, back: int) -> None:
+    """A peer whose clock is ahead, at the end of a line of equal delays, is measured exactly."""
+    start = 5 * 10**15
+    times = iter([start, start + there + back])
+    ours = Timesyncing(lambda: next(times))
+    question = ours.ask()
+    (answer,) = Timesyncing(lambda: start + there + offset).answer(question)
+    assert isinstance(answer, Timesync)
+    ours.answer(answer)
+
+    assert ours.last is not None
+    assert ours.last.round_trip_ns == there + back
+    assert abs(ours.last.offset_ns - offset) <= abs(there - back) / 2 + 1
+
+
+def test_an_answer_to_another_question_is_no_sample() -> None:
+    times = itertools.count(1000)
+    ours = Timesyncing(lambda: next(times))
+    ours.ask()
+    ours.answer(Timesync(5, 77))
+
+    assert ours.last is None
+
+
+# Telemetry
+
+
+@pytest.mark.parametrize(
+    ("theta", "north", "east", "yaw"),
+    [
+        (0.0, 0.0, 2.0, math.pi / 2),  # along x: east
+        (math.pi / 2, 2.0, 0.0, 0.0),  # along y: north
+        (math.pi, 0.0, -2.0, -math.pi / 2),
+        (-math.pi / 2, -2.0, 0.0, math.pi),
+    ],
+)
+def test_frames_are_converted(theta: float, north: float, east: float, yaw: float) -> None:
+    ned = to_ned(RobotState(0, 3.0, 4.0, theta, 2.0, 0.5))
+
+    assert (ned.north, ned.east, ned.yaw_rate) == (4.0, 3.0, -0.5)
+    assert (ned.v_north, ned.v_east) == pytest.approx((north, east), abs=1e-12)
+    assert math.cos(ned.yaw - yaw) == pytest.approx(1.0)
+
+
+def reports(services: Services, kind: type[Message], times: range) -> list[Message]:
+    due = [message for now in times for message in services.due(STATE, now)]
+    return [message for message in due if type(message) is kind]
+
+
+def test_telemetry_comes_as_often_as_it_should(services: Services) -> None:
+    ten_seconds = range(0, 10_000_000, 20_000)
+
+    assert len(reports(services, Heartbeat, ten_seconds)) == 10
+    assert len(reports(services, LocalPositionNed, range(20_000_000, 30_000_000, 20_000))) == 100
+
+
+@pytest.mark.parametrize(("interval", "count"), [(500_000.0, 20), (-1.0, 0), (0.0, 100)])
+def test_the_pace_can_be_set(services: Services, interval: float, count: int) -> None:
+    assert result(services, 511, 331.0, interval) == mavlink.MAV_RESULT_ACCEPTED
+
+    assert len(reports(services, Odometry, range(0, 10_000_000, 20_000))) == count
+
+
+@pytest.mark.parametrize(
+    ("do", "armed", "status"),
+    [
+        (lambda _: None, False, mavlink.MAV_STATE_STANDBY),
+        (lambda arming: arming.arm(), True, mavlink.MAV_STATE_ACTIVE),
+        (lambda arming: arming.stop(), False, mavlink.MAV_STATE_EMERGENCY),
+    ],
+)
+def test_the_heartbeat_says_whether_it_may_move(
+    services: Services, do: Callable[[object], None], armed: bool, status: int
+) -> None:
+    do(services.arming)
+    heartbeat = REPORTS[0](STATE, services.arming)
+
+    assert isinstance(heartbeat, Heartbeat)
+    assert heartbeat.type == mavlink.MAV_TYPE_GROUND_ROVER
+    assert bool(heartbeat.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED) is armed
+    assert heartbeat.system_status == status
+
+
+# Anything at all
+
+NUMBERS = st.floats(width=32)
+BYTE = st.integers(0, 255)
+REQUESTS = st.one_of(
+    st.builds(CommandLong, *[NUMBERS] * 7, st.integers(0, 65535), BYTE, BYTE, BYTE),
+    st.builds(
+        CommandLong,
+        *[NUMBERS] * 7,
+        st.sampled_from([400, 185, 511, 512, 520, RESET]),
+        st.just(1),
+        st.just(1),
+        BYTE,
+    ),
+    st.builds(ParamSet, NUMBERS, st.just(1), st.just(1), st.binary(max_size=16), BYTE),
+    st.builds(
+        ParamSet, NUMBERS, st.just(1), st.just(1), st.sampled_from([b"V_MAX", b"DELAY_N"]), BYTE
+    ),
+    st.builds(ParamRequestRead, st.integers(-(2**15), 2**15 - 1), BYTE, BYTE, st.binary()),
+    st.builds(Ping, BYTE, BYTE, BYTE, BYTE),
+    st.builds(Timesync, BYTE, BYTE),
+)
+
+
+@given(st.lists(REQUESTS, max_size=20))
+def test_no_request_raises_and_every_answer_can_be_sent(requests: list[Message]) -> None:
+    services = Services(standard_parameters(10, 20), timesync=Timesyncing(lambda: 1))
+    sender = Sender(1, 1)
+    for request in requests:
+        for answer in ask(services, request):
+            sender.frame(answer)
+        assert all(map(math.isfinite, services.allow(1.0, 1.0)))
+        assert services.parameters["DELAY_N"] == 10
