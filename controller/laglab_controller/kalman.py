@@ -12,6 +12,9 @@ from laglab_controller.model import Matrix, Model, Vector, identity, symmetric
 ILL_CONDITIONED = 1e-12
 """Below this ratio of the determinant to the product of the diagonal, S counts as singular."""
 
+NO_DEVIATION = 1e-150
+"""A standard deviation up to this is none: its square's inverse would overflow."""
+
 
 class Belief(NamedTuple):
     """An estimate x (d,) and the covariance P (d, d) that is claimed for its error."""
@@ -83,7 +86,9 @@ def _inverse(S: Matrix) -> Matrix:
 
 def _pseudo_inverse(S: Matrix) -> Matrix:
     """Of S scaled to a diagonal of ones, so that units do not decide what counts as zero."""
+    if not np.all(np.isfinite(S)):
+        return np.full_like(S, np.nan)
     diagonal = np.sqrt(np.abs(np.diag(S)))
-    scale = np.where(diagonal > 0, diagonal, 1.0)
+    scale = np.where(diagonal > NO_DEVIATION, diagonal, np.inf)  # what is certain has no inverse
     units = np.outer(scale, scale)
     return np.asarray(np.linalg.pinv(S / units, hermitian=True) / units, dtype=np.float64)
