@@ -20,7 +20,13 @@ from laglab_gateway.recorder import (
     NoRecorder,
     Recorder,
 )
-from laglab_gateway.services import Parameter, Parameters, Services, standard_parameters
+from laglab_gateway.services import (
+    Parameter,
+    Parameters,
+    Services,
+    Timesyncing,
+    standard_parameters,
+)
 from laglab_gateway.timeline import Direction, Event
 from laglab_gateway.trace import Trace, TraceRow, read_trace
 from laglab_gateway.watch import Watch, Watcher
@@ -58,6 +64,7 @@ __all__ = [
     "Services",
     "StationSilentError",
     "TimelineError",
+    "Timesyncing",
     "Trace",
     "TraceError",
     "TraceRow",

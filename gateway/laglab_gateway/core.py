@@ -14,7 +14,7 @@ from typing import NamedTuple
 from laglab_gateway.audit import Audit, DirectionAudit
 from laglab_gateway.channel import Channel
 from laglab_gateway.drive import Drive, Safety, follow, refusal, speeds, supervise
-from laglab_gateway.fates import Fates
+from laglab_gateway.fates import Fates, Kind
 from laglab_gateway.linklog import LinkRow
 from laglab_gateway.plant import Plant
 from laglab_gateway.services import RobotState, Services, standard_parameters
@@ -73,8 +73,8 @@ class Gateway:
         plant: Plant,
         config: GatewayConfig,
         fates: Mapping[Direction, Fates] | None = None,
-        services: Services | None = None,
         codec: Codec | None = None,
+        services: Services | None = None,
     ) -> None:
         n, m, Ts = config.command_delay, config.measurement_delay, config.sample_time
         self.tick = 0
@@ -86,7 +86,7 @@ class Gateway:
         self._plant = plant
         codec = codec or Codec(ROBOT_SYSTEM, ROBOT_COMPONENT)
         self._sender, self._receiver = codec.sender, codec.receiver
-        self.services = services or Services(standard_parameters(n, m))
+        self.services = services or Services(standard_parameters(n, m, config.safety))
         self._replies: list[Message] = []
         self._notices: list[Message] = []
         fates = fates or {}
@@ -184,24 +184,30 @@ class Gateway:
 
     def settle(self) -> None:
         """Let the commands that have come across the link take force, and the failsafe watch."""
-        k, config = self.tick, self._config
+        k, Ts, safety = self.tick, self._config.sample_time, self._safety()
         for command, _ in self._commands.due(k):
             self.audit.command.arrived(command.tick, k)
-            if refused := refusal(self._drive, command, config.safety):
+            if refused := refusal(self._drive, command, safety):
                 self.audit.refused[refused] += 1
             else:
                 self._drive = follow(command, k)
-        supervised = supervise(self._drive, k, config.sample_time, config.safety)
+        supervised = supervise(self._drive, k, Ts, safety)
         if supervised.mode is not self._drive.mode:
-            self._announce_stop()
+            self.audit.stops.append(k)
+            self.announce(f"no fresh command for {safety.link_timeout} s: stopping")
         self._drive = supervised
-        driven = speeds(self._drive, k, config.sample_time, config.safety)
-        self._speeds = self.services.allow(*driven)
+        armed = self.services.arming.armed
+        self._speeds = speeds(self._drive, k, Ts, safety) if armed else (0.0, 0.0)
 
-    def _announce_stop(self) -> None:
-        self.audit.stops.append(self.tick)
-        text = f"no fresh command for {self._config.safety.link_timeout} s: stopping"
-        self._notices.append(Statustext(MAV_SEVERITY_WARNING, text.encode()))
+    def _safety(self) -> Safety:
+        """The limits and times now: ground stations may set some of them."""
+        now = self.services.parameters
+        limits = (now["V_MAX"] or None, now["OMEGA_MAX"] or None)
+        return Safety(*limits, now["LINK_TIMEOUT"], self._config.safety.ramp)
+
+    def announce(self, text: str) -> None:
+        """Warn everybody who listens, in at most 50 characters, at the end of this tick."""
+        self._notices.append(Statustext(MAV_SEVERITY_WARNING, text.encode()[:50]))
 
     def take_replies(self) -> list[bytes]:
         """The frames that answer requests since the last call: not of the loop, to be sent too."""
@@ -214,12 +220,17 @@ class Gateway:
         self._replies += notices
         return notices
 
+    def ask_time(self) -> list[bytes]:
+        """The question how far the station's clock is away, if there is a clock to compare with."""
+        timesync = self.services.timesync
+        return [self._sender.frame(timesync.ask())] if timesync else []
+
     def take_link_rows(self) -> list[LinkRow]:
         """What the link did to the frames that entered it since the last call."""
-        rows = [*self._measurements.log, *self._commands.log]
-        self._measurements.log.clear()
-        self._commands.log.clear()
-        return rows
+        measurements, commands = self._measurements.take_log(), self._commands.take_log()
+        self.audit.measurement.fates.update(Kind(row.fate) for row in measurements)
+        self.audit.command.fates.update(Kind(row.fate) for row in commands)
+        return [*measurements, *commands]
 
     def close_tick(self) -> TraceRow:
         """Step to k + 1, unless the run ends at k; says what happened at k."""

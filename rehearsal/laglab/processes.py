@@ -2,6 +2,7 @@
 
 import multiprocessing
 import signal
+import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
@@ -89,7 +90,7 @@ def gateway_process(scenario: Scenario, url: str, directory: Path, reports: Conn
             open_endpoint(url) as endpoint,
         ):
             reports.send(Listening(endpoint.name))
-            patience = Patience(connect=30.0)
+            patience = Patience(silence=scenario.silence_timeout, connect=30.0)
             outcome, statistics = serve(scenario, gateway, endpoint, recorder, patience, clock)
         reports.send(Finished(outcome, clock.seconds, statistics))
     except SIDE_ERRORS as error:
@@ -100,7 +101,8 @@ def station_process(scenario: Scenario, url: str, reports: Connection) -> None:
     """The remote station's side."""
     try:
         with open_endpoint(url) as endpoint:
-            run_station(Station(station_config(scenario)), endpoint)
+            station = Station(station_config(scenario), clock=time.monotonic_ns)
+            run_station(station, endpoint, scenario.silence_timeout)
     except SIDE_ERRORS as error:
         reports.send(Failed(str(error)))
 
