@@ -34,4 +34,5 @@ class FmuBuildHook(BuildHookInterface[Any]):
         build_data["pure_python"] = False
         build_data["tag"] = f"py3-none-{platform}"
         if version == "standard":
-            build_data["force_include"][str(HERE / "src")] = "laglab_fmu/src"
+            for folder in ("src", "content"):
+                build_data["force_include"][str(HERE / folder)] = f"laglab_fmu/{folder}"

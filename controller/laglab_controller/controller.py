@@ -12,10 +12,11 @@ from numpy.typing import ArrayLike
 from laglab_controller.errors import ConfigError
 from laglab_controller.estimator import Estimator, Measured, State
 from laglab_controller.family import Kind, estimator_kind
+from laglab_controller.flight import Echo, Flight, hear, send, take_off
 from laglab_controller.law import STAND_STILL, Drive, Law, as_input
-from laglab_controller.model import RobotModel, Vector, constant
-from laglab_controller.rigid import Motion, RigidMotions, moved
-from laglab_controller.sliding import SlidingProduct
+from laglab_controller.model import Vector, constant
+from laglab_controller.motion import Motion, compose
+from laglab_controller.robot import RobotModel
 
 DIVERGED = 1000.0
 """[m] from the origin: no estimate of a robot that a run is about is ever there."""
@@ -34,7 +35,8 @@ class StationConfig:
     initial_estimate: ArrayLike = (0.0, 0.0, 0.0)
     initial_covariance: ArrayLike = field(default_factory=lambda: np.eye(3) * 1e-4)
     command_delay: int = 0
-    """n. The delay m of the measurements is read from their stamps."""
+    """n, until the stamps tell: n is estimated from the command that each measurement echoes, and
+    the delay m of a measurement is read from its own stamp."""
 
     def __post_init__(self) -> None:
         estimator_kind(self.estimator)
@@ -48,8 +50,7 @@ class Control(NamedTuple):
     """The controller's knowledge at a tick; immutable."""
 
     estimate: State
-    in_flight: SlidingProduct[Vector, Motion]
-    """u_{k-n} ... u_{k-1}, as sent; zeros for what was sent before tick 0."""
+    flight: Flight
     drive: Drive
     """The last command."""
 
@@ -72,46 +73,44 @@ class Controller:
     def _estimator(self) -> Estimator[Any]:
         return self.kind.make(self.config.model)
 
-    @cached_property
-    def _motions(self) -> RigidMotions:
-        return RigidMotions(self.config.model)
-
     def start(self) -> Control:
         """Tick 0, before its correction."""
-        in_flight: SlidingProduct[Vector, Motion] = SlidingProduct(
-            self._motions.compose, self._motions.identity
-        )
-        for _ in range(self.config.command_delay):
-            in_flight = self._sent(in_flight, STAND_STILL)
-        x, P = np.array(self.config.initial_estimate), np.array(self.config.initial_covariance)
-        return Control(self._estimator.start(x, P), in_flight, STAND_STILL)
+        config = self.config
+        x, P = np.array(config.initial_estimate), np.array(config.initial_covariance)
+        flight = take_off(config.model, config.command_delay)
+        return Control(self._estimator.start(x, P), flight, STAND_STILL)
 
     def advance(self, control: Control) -> Control:
         """One tick later: the last command is on its way, the one n ticks older was applied."""
-        in_flight = self._sent(control.in_flight, control.drive)
-        applied, in_flight = in_flight.pop()
-        estimate = self._estimator.predict(control.estimate, applied)
-        return control._replace(estimate=estimate, in_flight=in_flight)
+        estimate, flight, drive = control
+        flight, applied = send(self.config.model, flight, as_input(drive))
+        estimate = self._estimator.predict(estimate, self._applied(applied, drive))
+        return Control(estimate, flight, drive)
 
-    def answer(self, control: Control, measurements: Sequence[Measured]) -> Control:
-        """The tick's correction and command: the robot stands still when there is no estimate to
-        drive it by, or when that estimate has diverged."""
-        estimate = self._estimator.correct(control.estimate, measurements)
-        control = control._replace(estimate=estimate)
+    def answer(
+        self, control: Control, measurements: Sequence[Measured], echoes: Sequence[Echo] = ()
+    ) -> Control:
+        """The tick's correction and command, from all that arrived.
+
+        The robot is to stand still when there is no estimate to drive it by, or it has diverged.
+        """
+        estimate, flight, drive = control
+        flight, inputs = hear(self.config.model, flight, echoes)
+        estimate = self._estimator.correct(estimate, measurements, inputs)
         if estimate.x is None or diverged(estimate.x):
-            return control._replace(drive=STAND_STILL)
-        pose = self._at_arrival(estimate.x, control.in_flight)
-        return control._replace(drive=self.config.law.drive(pose, control.drive.at_goal))
+            return Control(estimate, flight, STAND_STILL)
+        pose = self._at_arrival(estimate.x, flight, drive)
+        return Control(estimate, flight, self.config.law.drive(pose, drive.at_goal))
 
-    def _at_arrival(self, x: Vector, in_flight: SlidingProduct[Vector, Motion]) -> Vector:
+    def _applied(self, u: Vector, drive: Drive) -> Vector:
+        """The input that the estimator is told."""
+        return u
+
+    def _at_arrival(self, x: Vector, flight: Flight, drive: Drive) -> Vector:
         """(29): where the robot will be when the command that is now made comes into force."""
-        return moved(x, in_flight.product) if self.kind.predicts else x
-
-    def _sent(
-        self, in_flight: SlidingProduct[Vector, Motion], drive: Drive
-    ) -> SlidingProduct[Vector, Motion]:
-        u = as_input(drive)
-        return in_flight.push(u, self._motions.over(u))
+        if not self.kind.predicts:
+            return x
+        return np.array(compose(Motion(*x.tolist()), flight.in_flight.product)[:3])
 
 
 def diverged(x: Vector) -> bool:

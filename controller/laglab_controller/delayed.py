@@ -1,13 +1,13 @@
 """`delayed-ekf`: an EKF that lives where the measurements belong, carried on to the present."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Generic, NamedTuple, TypeVar
 
 from laglab_controller import kalman
 from laglab_controller.estimator import Applied, Measured
-from laglab_controller.kalman import Belief
+from laglab_controller.kalman import Belief, Compared, Innovation
 from laglab_controller.log import Log, append
 from laglab_controller.model import Matrix, Model, Vector
 from laglab_controller.sliding import SlidingProduct
@@ -74,9 +74,10 @@ class DelayedEkf(Generic[W]):
 
     def predict(self, state: DelayedState[W], u: Vector) -> DelayedState[W]:
         """One more input in the window; unmeasured, the EKF follows `memory` ticks behind."""
+        tick = state.tick + 1
         window = state.window.push(u, self.windows.over(u))
-        predicted = replace(state, tick=state.tick + 1, window=window)
-        return self._advance(predicted, predicted.tick - self.memory, z=None)
+        predicted = DelayedState(tick, state.filtered, window, self.windows)
+        return self._advance(predicted, tick - self.memory, None, {})
 
     def correct(
         self,
@@ -86,25 +87,51 @@ class DelayedEkf(Generic[W]):
     ) -> DelayedState[W]:
         """Roll back to the oldest news, replay from there, then go on to the newest measurement."""
         oldest, newest = _span(state.filtered)
+        known = {j + 1: u for j, u in inputs if oldest <= j < state.tick}
         late = {s: z for s, z in reversed(measurements) if oldest <= s <= newest}
-        known = {j + 1: u for j, u in inputs if oldest < j + 1}
-        if late or known:
-            state = self._revise(state, late, known)
-        for s, z in sorted(measurements, key=lambda measured: measured.tick):
-            state = self._advance(state, s, z)
-        return state
+        late_known = {tick: u for tick, u in known.items() if tick <= newest}
+        if late or late_known:
+            state = self._revise(state, late, late_known)
+        for s, z in sorted(measurements, key=_sampled):
+            state = self._advance(state, s, z, known)
+        return self._put_right(state, known)
 
-    def _advance(self, state: DelayedState[W], s: int, z: Vector | None) -> DelayedState[W]:
+    def innovation(self, state: DelayedState[W]) -> Innovation | None:
+        """z_s - h(x^-_s), where the EKF is."""
+        newest = state.filtered.newest
+        if newest.z is None:
+            return None
+        return kalman.innovation(self.model, Compared(newest.prior, newest.z))
+
+    def _advance(
+        self, state: DelayedState[W], s: int, z: Vector | None, known: Mapping[int, Vector]
+    ) -> DelayedState[W]:
         """Bring the EKF up to tick s > its own, and correct it there."""
         filtered, window = state.filtered, state.window
-        while filtered.newest.tick < s:
+        tick = filtered.newest.tick
+        if tick >= s:
+            return state
+        while tick < s:
             u, window = window.pop()
-            filtered = self._extend(filtered, u, z if filtered.newest.tick + 1 == s else None)
-        return replace(state, filtered=filtered, window=window)
+            tick += 1
+            filtered = self._extend(filtered, known.get(tick, u), z if tick == s else None)
+        return DelayedState(state.tick, filtered, window, self.windows)
+
+    def _put_right(self, state: DelayedState[W], known: Mapping[int, Vector]) -> DelayedState[W]:
+        """The window with those of its inputs that were wrong put right; `known` by the tick that
+        each led to."""
+        newest = state.filtered.newest.tick
+        if all(tick <= newest for tick in known):
+            return state
+        window = state.window.emptied()
+        for tick, u in enumerate(state.window, start=newest + 1):
+            right = known.get(tick, u)
+            window = window.push(right, self.windows.over(right))
+        return DelayedState(state.tick, state.filtered, window, self.windows)
 
     def _extend(self, filtered: Log[Filtered], u: Vector, z: Vector | None) -> Log[Filtered]:
         tick, *_, posterior = filtered.newest
-        prior, _ = kalman.predict(self.model, posterior, u)
+        prior = Belief(*self.model.predict(*posterior, u))
         return append(filtered, self._corrected(tick + 1, u, prior, z), self.memory)
 
     def _corrected(self, tick: int, u: Vector | None, prior: Belief, z: Vector | None) -> Filtered:
@@ -124,22 +151,11 @@ class DelayedEkf(Generic[W]):
                 filtered = Log(self._corrected(past.tick, u, past.prior, z), older, 1)
             else:
                 filtered = self._extend(filtered, u, z)
-        window = self._with_inputs(state.window, known, newest=state.filtered.newest.tick)
-        return replace(state, filtered=filtered or state.filtered, window=window)
+        return DelayedState(state.tick, filtered or state.filtered, state.window, self.windows)
 
-    def _with_inputs(
-        self, window: SlidingProduct[Vector, W], known: Mapping[int, Vector], newest: int
-    ) -> SlidingProduct[Vector, W]:
-        """The window after tick `newest`, with those of its inputs that were wrong put right."""
-        if not known or max(known) <= newest:
-            return window
-        right: SlidingProduct[Vector, W] = SlidingProduct(
-            self.windows.compose, self.windows.identity
-        )
-        for tick, (u, _) in enumerate(window, start=newest + 1):
-            u = known.get(tick, u)
-            right = right.push(u, self.windows.over(u))
-        return right
+
+def _sampled(measured: Measured) -> int:
+    return measured.tick
 
 
 def _span(filtered: Log[Filtered]) -> tuple[int, int]:

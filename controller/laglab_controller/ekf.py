@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from laglab_controller import kalman
 from laglab_controller.estimator import Applied, Measured
-from laglab_controller.kalman import Belief
+from laglab_controller.kalman import Belief, Compared, Innovation
 from laglab_controller.model import Matrix, Model, Vector
 
 
@@ -17,6 +17,7 @@ class EkfState(NamedTuple):
     x: Vector
     P: Matrix
     newest: int
+    compared: Compared | None
 
 
 @dataclass(frozen=True)
@@ -27,20 +28,25 @@ class Ekf:
 
     def start(self, x: Vector, P: Matrix) -> EkfState:
         """The prior of tick 0."""
-        return EkfState(0, x, P, newest=-1)
+        return EkfState(0, x, P, newest=-1, compared=None)
 
     def predict(self, state: EkfState, u: Vector) -> EkfState:
         """(27)."""
-        (x, P), _ = kalman.predict(self.model, Belief(state.x, state.P), u)
-        return EkfState(state.tick + 1, x, P, state.newest)
+        x, P = self.model.predict(state.x, state.P, u)
+        return EkfState(state.tick + 1, x, P, state.newest, compared=None)
 
     def correct(
         self, state: EkfState, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
     ) -> EkfState:
         """(8) for every measurement newer than all before; it has no past to correct."""
-        tick, x, P, newest = state
+        tick, x, P, newest, compared = state
         for s, z in measurements:
             if s > newest:
-                x, P = kalman.correct(self.model, Belief(x, P), z)
+                compared = Compared(Belief(x, P), z)
+                x, P = kalman.correct(self.model, *compared)
                 newest = s
-        return EkfState(tick, x, P, newest)
+        return EkfState(tick, x, P, newest, compared)
+
+    def innovation(self, state: EkfState) -> Innovation | None:
+        """z_s - h(x^-_k)."""
+        return kalman.innovation(self.model, state.compared)

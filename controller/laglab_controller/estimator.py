@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol, TypeVar
 
+from laglab_controller.kalman import Innovation
 from laglab_controller.model import Matrix, Vector
 
 
@@ -65,4 +66,8 @@ class Estimator(Protocol[S]):
         `inputs` tells of earlier ticks at which another input was in force than predict was given.
         Of two measurements sampled at the same tick, the second is a repeat and is not used.
         """
+        ...
+
+    def innovation(self, state: S) -> Innovation | None:
+        """Of the newest measurement used at this tick, as the estimator saw it; None without."""
         ...

@@ -7,10 +7,12 @@ from laglab_controller.delayed import DelayedEkf
 from laglab_controller.ekf import Ekf
 from laglab_controller.errors import ConfigError
 from laglab_controller.estimator import Estimator
-from laglab_controller.model import RobotModel
+from laglab_controller.exact import PopfExact
 from laglab_controller.popf import Popf
 from laglab_controller.raw import Raw
-from laglab_controller.rigid import RigidMotions
+from laglab_controller.rewinding import Rewinding
+from laglab_controller.robot import RobotModel
+from laglab_controller.windows import RigidMotions
 
 
 class Kind(NamedTuple):
@@ -23,12 +25,26 @@ class Kind(NamedTuple):
 
 
 ESTIMATORS: Mapping[str, Kind] = {
-    "raw": Kind("no filter and no prediction: the newest measurement", lambda _: Raw(), False),
-    "ekf": Kind("the plain EKF, which takes a late measurement for a fresh one", Ekf),
-    "popf": Kind("the paper's filter", Popf),
+    "raw": Kind(
+        "no filter and no prediction: the newest measurement",
+        lambda _: Raw(),
+        predicts=False,
+    ),
+    "ekf": Kind(
+        "the plain EKF, which takes a late measurement for a fresh one",
+        lambda model: Rewinding(Ekf(model)),
+    ),
+    "popf": Kind(
+        "the paper's filter",
+        lambda model: Rewinding(Popf(model)),
+    ),
     "popf-printed": Kind(
         "the paper's filter with the innovation as (28) prints it",
-        lambda model: Popf(model, innovation_at_k=True),
+        lambda model: Rewinding(Popf(model, innovation_at_k=True)),
+    ),
+    "popf-exact": Kind(
+        "the structure of popf with the true cross-covariances",
+        lambda model: Rewinding(PopfExact(model)),
     ),
     "delayed-ekf": Kind(
         "the optimum: an EKF at the measurement's tick, carried forward over the known inputs",

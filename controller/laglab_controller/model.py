@@ -1,12 +1,14 @@
-"""What every filter needs to know of a system: (5), linearised as in (25) and (26)."""
+"""What a filter needs to know of a system: (5), linearised as in (25) and (26)."""
 
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from laglab_controller.angle import direction, wrap
+from laglab_controller.angle import wrap
 from laglab_controller.errors import ConfigError
 
 Vector = NDArray[np.float64]
@@ -14,21 +16,17 @@ Matrix = NDArray[np.float64]
 
 
 class Model(Protocol):
-    """x_{k+1} = f(x_k, u_k, w_k), z_k = h(x_k, v_k), and their Jacobians, in the paper's letters.
+    """x_{k+1} = f(x_k, u_k, w_k), z_k = h(x_k, v_k), in the paper's letters.
 
     Shapes: x (d,), u (p,), z (q,). Units are the model's own.
     """
 
-    def f(self, x: Vector, u: Vector) -> Vector:
-        """The next state (d,) without noise."""
+    def predict(self, x: Vector, P: Matrix, u: Vector) -> tuple[Vector, Matrix]:
+        """(27): the prior x (d,), P (d, d) one tick later, with u in force meanwhile."""
         ...
 
     def A(self, x: Vector, u: Vector) -> Matrix:
         """df/dx (d, d) at (x, u, 0), as in (25)."""
-        ...
-
-    def process_noise(self, x: Vector, u: Vector) -> Matrix:
-        """W Q W^T (d, d), the covariance of w~ in (25)."""
         ...
 
     def h(self, x: Vector) -> Vector:
@@ -48,6 +46,51 @@ class Model(Protocol):
         ...
 
 
+@dataclass(frozen=True, eq=False)
+class NonlinearModel:
+    """Any system, given by its functions and their Jacobians: the generic form of (25) to (28).
+
+    `f(x, u)` (d,), `A(x, u)` (d, d) and `W(x, u)` (d, r) for the process noise w of covariance `Q`
+    (r, r); `h(x)` (q,), `H(x)` (q, d) and the measurement noise of covariance `R` (q, q), which
+    comes in through `V(x)` (q, q), the identity when left out. `angles` lists the components of z
+    that are angles [rad].
+    """
+
+    f: Callable[[Vector, Vector], Vector]
+    A: Callable[[Vector, Vector], Matrix]
+    W: Callable[[Vector, Vector], Matrix]
+    Q: Matrix
+    h: Callable[[Vector], Vector]
+    H: Callable[[Vector], Matrix]
+    R: Matrix
+    V: Callable[[Vector], Matrix] | None = None
+    angles: tuple[int, ...] = ()
+
+    def predict(self, x: Vector, P: Matrix, u: Vector) -> tuple[Vector, Matrix]:
+        """(27), with A and W of tick k-1, as (25) defines them."""
+        A, W = self.A(x, u), self.W(x, u)
+        return self.f(x, u), symmetric(A @ P @ A.T + W @ self.Q @ W.T)
+
+    def measurement_noise(self, x: Vector) -> Matrix:
+        """V R V^T of (28)."""
+        if self.V is None:
+            return self.R
+        V = self.V(x)
+        return V @ self.R @ V.T
+
+    def innovation(self, z: Vector, expected: Vector) -> Vector:
+        """z - expected (q,), with `angles` wrapped."""
+        difference = z - expected
+        for i in self.angles:
+            difference[i] = wrap(float(difference[i]))
+        return difference
+
+
+def symmetric(P: Matrix) -> Matrix:
+    """(P + P^T)/2: rounding leaves a covariance a little lopsided."""
+    return (P + P.T) * 0.5
+
+
 def constant(values: ArrayLike, shape: tuple[int, ...], name: str) -> NDArray[np.float64]:
     """A read-only double array of that shape. Raises ConfigError, naming it, for any other."""
     array = np.array(values, dtype=np.float64)
@@ -57,67 +100,7 @@ def constant(values: ArrayLike, shape: tuple[int, ...], name: str) -> NDArray[np
     return array
 
 
-IDENTITY = constant(np.eye(3), (3, 3), "I")
-
-
-@dataclass(frozen=True, eq=False)
-class RobotModel:
-    """The differential-drive robot of section 2: x = [x, y, theta] [m, m, rad], u = [v, omega].
-
-    `Q` (2, 2) is the covariance of the wheel speeds' noise [w_L, w_R] [(rad/s)^2], `R` (3, 3) that
-    of the measurement [m^2, m^2, rad^2]. The defaults are the paper's (30). theta is not wrapped.
-    """
-
-    sample_time: float = 0.01
-    wheel_radius: float = 0.05
-    track: float = 0.6
-    Q: Matrix = field(default_factory=lambda: np.diag([0.01, 0.01]))
-    R: Matrix = field(default_factory=lambda: np.diag([0.01, 0.01, 0.018]))
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "Q", constant(self.Q, (2, 2), "Q"))
-        object.__setattr__(self, "R", constant(self.R, (3, 3), "R"))
-
-    def f(self, x: Vector, u: Vector) -> Vector:
-        """(3)."""
-        x_, y, theta = x.tolist()
-        v, omega = u.tolist()
-        Ts, (cosine, sine) = self.sample_time, direction(theta)
-        return np.array((x_ + Ts * v * cosine, y + Ts * v * sine, theta + Ts * omega))
-
-    def A(self, x: Vector, u: Vector) -> Matrix:
-        """(31)."""
-        distance, (cosine, sine) = self.sample_time * float(u[0]), direction(float(x[2]))
-        return np.array(
-            ((1.0, 0.0, -distance * sine), (0.0, 1.0, distance * cosine), (0.0, 0.0, 1.0))
-        )
-
-    def W(self, x: Vector) -> Matrix:
-        """(32) with the sign of the third row corrected; columns w_L, w_R."""
-        cosine, sine = direction(float(x[2]))
-        turn = 2 / self.track
-        scale = self.sample_time * self.wheel_radius / 2
-        return scale * np.array(((cosine, cosine), (sine, sine), (-turn, turn)))
-
-    def process_noise(self, x: Vector, u: Vector) -> Matrix:
-        """W Q W^T of (27)."""
-        W = self.W(x)
-        return W @ self.Q @ W.T
-
-    def h(self, x: Vector) -> Vector:
-        """The pose itself, whose Jacobian is (33)."""
-        return x
-
-    def H(self, x: Vector) -> Matrix:
-        """(33)."""
-        return IDENTITY
-
-    def measurement_noise(self, x: Vector) -> Matrix:
-        """R, for V = I in (33)."""
-        return self.R
-
-    def innovation(self, z: Vector, expected: Vector) -> Vector:
-        """z - expected with the heading wrapped."""
-        difference = z - expected
-        difference[2] = wrap(float(difference[2]))
-        return difference
+@cache
+def identity(size: int) -> Matrix:
+    """I, read-only."""
+    return constant(np.eye(size), (size, size), "I")

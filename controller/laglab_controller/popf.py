@@ -4,13 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-import numpy as np
-
-from laglab_controller import kalman
 from laglab_controller.estimator import Applied, Measured
-from laglab_controller.kalman import Belief
-from laglab_controller.log import Log, append, newest_first
-from laglab_controller.model import Matrix, Model, Vector
+from laglab_controller.history import History
+from laglab_controller.kalman import Belief, Compared, Innovation, gain, innovation
+from laglab_controller.model import Matrix, Model, Vector, identity, symmetric
 from laglab_controller.sliding import SlidingProduct
 
 
@@ -31,52 +28,47 @@ class PopfState(NamedTuple):
     prior: Belief
     """x^-_k and P^-_k."""
     left: Matrix
-    """I - K_k H_k of the corrections made so far at this tick; I before the first."""
-    window: SlidingProduct[Step, Matrix]
-    """The ticks since the newest measurement's, whose product is M* but for that tick's factor."""
-    since: int
-    """The oldest tick in `window`."""
-    older: Log[Step] | None
-    """The ticks before `since`."""
+    """The product of I - K_k H_k over the corrections made so far at this tick."""
+    past: History[Step, Matrix]
+    """Split at the newest measurement used: M* is the product of its window, but for that tick's
+    own factor."""
     used: int
     """Bit i is set when z_{k-i} has been used."""
+    compared: Compared | None
 
 
 @dataclass(frozen=True)
 class Popf:
-    """The paper's filter with (28) as (11) derives it; `innovation_at_k` prints it as (28) does.
+    """The paper's filter with (28) as (11) derives it.
+
+    `innovation_at_k` takes h(x^-_k) for h(x^-_s), and `covariance_at_k` H_k for H_s, as (28) prints
+    them: kept only to show what that costs.
 
     A measurement may come at any time, in any order, up to `memory` ticks late: M* is taken from
-    its own tick on. The equations take two measurements for independent of each other's
-    corrections, so those on the way at the same time make P too small: see `popf-exact`.
+    its own tick on. The derivation takes the errors of measurements that are on their way at the
+    same time for independent, so P comes out too small: `popf-exact` does not.
     """
 
     model: Model
     innovation_at_k: bool = False
+    covariance_at_k: bool = False
     memory: int = 1024
 
     def start(self, x: Vector, P: Matrix) -> PopfState:
         """The prior of tick 0."""
-        identity = np.eye(len(x))
-        window: SlidingProduct[Step, Matrix] = SlidingProduct(_compose, identity)
-        return PopfState(
-            0, x, P, Belief(x, P), left=identity, window=window, since=0, older=None, used=0
-        )
+        I = identity(len(x))  # noqa: E741
+        window: SlidingProduct[Step, Matrix] = SlidingProduct(_compose, I)
+        past = History(window, since=0, older=None, memory=self.memory)
+        return PopfState(0, x, P, Belief(x, P), I, past, used=0, compared=None)
 
     def predict(self, state: PopfState, u: Vector) -> PopfState:
         """(27), and one more factor for (21)."""
-        prior, A = kalman.predict(self.model, Belief(state.x, state.P), u)
-        step = Step(state.tick, state.prior, A @ state.left)
-        predicted = state._replace(
-            tick=state.tick + 1,
-            x=prior.x,
-            P=prior.P,
-            prior=prior,
-            left=state.window.identity,
-            window=state.window.push(step, step.factor),
-            used=state.used << 1 & (1 << self.memory) - 1,
-        )
-        return self._slide(predicted, to=predicted.tick - self.memory)
+        tick, x, P, prior, left, past, used, _ = state
+        factor = self.model.A(x, u).dot(left)
+        past = past.push(tick, Step(tick, prior, factor), factor)
+        used = used << 1 & (1 << self.memory) - 1
+        prior = Belief(*self.model.predict(x, P, u))
+        return PopfState(tick + 1, *prior, prior, identity(len(x)), past, used, None)
 
     def correct(
         self, state: PopfState, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
@@ -85,39 +77,35 @@ class Popf:
         for s, z in measurements:
             lateness = state.tick - s
             if lateness < self.memory and not state.used >> lateness & 1:
-                state = self._correct(self._slide(state, to=s), s, z)
+                state = self._correct(state, s, z)
         return state
 
-    def _slide(self, state: PopfState, to: int) -> PopfState:
-        """Leave in the window only the ticks after `to`."""
-        window, since, older = state.window, state.since, state.older
-        while since <= min(to, state.tick - 1):
-            step, window = window.pop()
-            older = append(older, step, self.memory)
-            since += 1
-        return state._replace(window=window, since=since, older=older)
-
     def _correct(self, state: PopfState, s: int, z: Vector) -> PopfState:
-        model, (x_s, P_s), M = self.model, *_prior_and_M(state, s)
-        H = model.H(x_s)
-        K = kalman.gain(M @ P_s @ H.T, H @ P_s @ H.T + model.measurement_noise(x_s))  # (24)
-        expected = model.h(state.prior.x if self.innovation_at_k else x_s)
-        left = state.left - K @ model.H(state.prior.x) @ state.left
-        return state._replace(
-            x=state.x + K @ model.innovation(z, expected),  # (11)
-            P=kalman.symmetric(state.P - K @ H @ P_s @ M.T),  # (23)
-            left=left,
-            used=state.used | 1 << state.tick - s,
-        )
+        tick, x, P, prior, left, past, used, _ = state
+        past = past.split(at=min(s, tick - 1))
+        (x_s, P_s), M = (prior, left) if s == tick else _prior_and_M(past, s, left)
+        model, H = self.model, self.model.H(x_s)
+        PHt = P_s.dot(H.T)
+        K = gain(M.dot(PHt), H.dot(PHt) + model.measurement_noise(x_s))  # (24)
+        expected = model.h(prior.x if self.innovation_at_k else x_s)
+        x = x + K.dot(model.innovation(z, expected))  # (11)
+        H_k = model.H(prior.x)
+        seen = H_k.dot(P_s) if self.covariance_at_k else PHt.T
+        P = symmetric(P - K.dot(seen).dot(M.T))  # (23)
+        left = left - K.dot(H_k).dot(left)
+        used |= 1 << tick - s
+        return PopfState(tick, x, P, prior, left, past, used, Compared(Belief(x_s, P_s), z))
+
+    def innovation(self, state: PopfState) -> Innovation | None:
+        """z_s - h(x^-_s)."""
+        return innovation(self.model, state.compared)
 
 
-def _prior_and_M(state: PopfState, s: int) -> tuple[Belief, Matrix]:
+def _prior_and_M(past: History[Step, Matrix], s: int, left: Matrix) -> tuple[Belief, Matrix]:
     """The prior of tick s, and M* (21) from there to this tick and its corrections so far."""
-    if s == state.tick:
-        return state.prior, state.left
-    M = state.left @ state.window.product
-    for step in newest_first(state.older):
-        M = M @ step.factor
+    M = left.dot(past.window.product)
+    for step in past.backwards():
+        M = M.dot(step.factor)
         if step.tick == s:
             return step.prior, M
     raise IndexError(f"tick {s} is no longer kept")
@@ -125,4 +113,5 @@ def _prior_and_M(state: PopfState, s: int) -> tuple[Belief, Matrix]:
 
 def _compose(older: Matrix, newer: Matrix) -> Matrix:
     """Later factors of (21) stand to the left."""
-    return newer @ older
+    product: Matrix = newer.dot(older)
+    return product

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from laglab_controller.estimator import Applied, Measured
+from laglab_controller.kalman import Innovation
 from laglab_controller.model import Matrix, Vector
 
 
@@ -39,3 +40,7 @@ class Raw:
             if tick > state.newest:
                 state = state._replace(x=z, newest=tick)
         return state
+
+    def innovation(self, state: RawState) -> Innovation | None:
+        """It expects nothing."""
+        return None

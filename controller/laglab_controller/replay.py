@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from laglab_controller.estimator import Estimator, Measured
+from laglab_controller.kalman import Innovation, gain
 from laglab_controller.model import Matrix, Vector
 
 
@@ -16,6 +17,8 @@ class Replay(NamedTuple):
     """(N+1, d)."""
     covariances: Matrix
     """(N+1, d, d)."""
+    nis: Vector
+    """(N+1,): the normalised innovation squared v^T S^-1 v of the newest measurement used."""
 
 
 def replay(
@@ -31,7 +34,7 @@ def replay(
     the k-th holds those that arrived at tick k. Raises ValueError when the lengths do not fit.
     """
     shape = (len(inputs) + 1, len(x))
-    answer = Replay(np.full(shape, np.nan), np.full((*shape, len(x)), np.nan))
+    answer = Replay(*(np.full(s, np.nan) for s in (shape, (*shape, len(x)), shape[:1])))
     state = estimator.start(x, P)
     for k, measurements in zip(range(len(inputs) + 1), arrivals, strict=True):
         if k > 0:
@@ -43,7 +46,16 @@ def replay(
             break
         answer.estimates[k] = state.x
         answer.covariances[k] = np.nan if state.P is None else state.P
+        answer.nis[k] = _squared(estimator.innovation(state)) if measurements else np.nan
     return answer
+
+
+def _squared(innovation: Innovation | None) -> float:
+    """v^T S^-1 v."""
+    if innovation is None:
+        return np.nan
+    value, S = innovation
+    return float((gain(value[np.newaxis], S) @ value)[0])
 
 
 def constant_delay(measurements: Vector, m: int) -> list[list[Measured]]:

@@ -1,8 +1,7 @@
 """A product over a sliding window, at a cost per step that does not depend on its length."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-from typing import Generic, NamedTuple, TypeVar
+from typing import Generic, NamedTuple, Self, TypeVar
 
 Item = TypeVar("Item")
 Product = TypeVar("Product")
@@ -17,56 +16,74 @@ class Cell(NamedTuple, Generic[Item, Product]):
     below: "Cell[Item, Product] | None"
 
 
-@dataclass(frozen=True)
 class SlidingProduct(Generic[Item, Product]):
     """A first-in first-out queue of items that knows the product of their factors.
 
-    Two stacks make the queue: `back`, where items come, and `front`, where they leave; when the
-    front runs empty the back is turned over onto it. Every product is made of factors of the
+    Two stacks make the queue: the back, where items come, and the front, where they leave; when
+    the front runs empty the back is turned over onto it. Every product is made of factors of the
     present window only, so nothing is ever divided out and no rounding error builds up.
-    Immutable; amortised three products per step.
+    Immutable; on average three products per step.
     """
 
-    compose: Callable[[Product, Product], Product]
-    """`compose(older, newer)`, associative."""
-    identity: Product
-    front: Cell[Item, Product] | None = None
-    back: Cell[Item, Product] | None = None
+    __slots__ = ("_back", "_compose", "_front", "identity")
+
+    def __init__(
+        self,
+        compose: Callable[[Product, Product], Product],
+        identity: Product,
+        front: Cell[Item, Product] | None = None,
+        back: Cell[Item, Product] | None = None,
+    ) -> None:
+        """Empty when no stacks are given. `compose(older, newer)` must be associative."""
+        self.identity = identity
+        self._compose = compose
+        self._front = front
+        self._back = back
 
     @property
     def product(self) -> Product:
         """Of the whole window, oldest first."""
-        if self.front is None:
-            return self.identity if self.back is None else self.back.product
-        if self.back is None:
-            return self.front.product
-        return self.compose(self.front.product, self.back.product)
+        if self._front is None:
+            return self.identity if self._back is None else self._back.product
+        if self._back is None:
+            return self._front.product
+        return self._compose(self._front.product, self._back.product)
 
-    def push(self, item: Item, factor: Product) -> "SlidingProduct[Item, Product]":
+    def push(self, item: Item, factor: Product) -> Self:
         """With a newest item."""
-        product = factor if self.back is None else self.compose(self.back.product, factor)
-        return replace(self, back=Cell(item, factor, product, self.back))
+        back = self._back
+        product = factor if back is None else self._compose(back.product, factor)
+        return self._with(self._front, Cell(item, factor, product, back))
 
-    def pop(self) -> "tuple[Item, SlidingProduct[Item, Product]]":
+    def pop(self) -> tuple[Item, Self]:
         """The oldest item, and the queue without it. Raises IndexError when the queue is empty."""
-        front, back = self.front, self.back
+        front, back = self._front, self._back
         if front is None:
             front, back = self._turned(), None
         if front is None:
             raise IndexError("the window is empty")
-        return front.item, replace(self, front=front.below, back=back)
+        return front.item, self._with(front.below, back)
 
-    def __iter__(self) -> Iterator[tuple[Item, Product]]:
-        """Items and factors, oldest first."""
-        for cell in _walk(self.front):
-            yield cell.item, cell.factor
-        for cell in reversed(list(_walk(self.back))):
-            yield cell.item, cell.factor
+    def emptied(self) -> Self:
+        """A new one for the same kind of products."""
+        return self._with(None, None)
+
+    def __iter__(self) -> Iterator[Item]:
+        """The items, oldest first."""
+        for cell in _walk(self._front):
+            yield cell.item
+        for cell in reversed(list(_walk(self._back))):
+            yield cell.item
+
+    def _with(self, front: Cell[Item, Product] | None, back: Cell[Item, Product] | None) -> Self:
+        return type(self)(self._compose, self.identity, front, back)
 
     def _turned(self) -> Cell[Item, Product] | None:
         front: Cell[Item, Product] | None = None
-        for cell in _walk(self.back):
-            product = cell.factor if front is None else self.compose(cell.factor, front.product)
+        for cell in _walk(self._back):
+            product = cell.factor
+            if front is not None:
+                product = self._compose(cell.factor, front.product)
             front = Cell(cell.item, cell.factor, product, front)
         return front
 

@@ -1,9 +1,14 @@
 """The station's side of the link without I/O: the robot's bytes in, the answer's bytes out."""
 
+from collections.abc import Callable
+from dataclasses import replace
+
 import numpy as np
 
 from laglab_controller.controller import Control, Controller, StationConfig, diverged
 from laglab_controller.estimator import Measured, State
+from laglab_controller.flight import Echo
+from laglab_controller.joining import Rest, observe, prior
 from laglab_protocol import (
     STATION_COMPONENT,
     STATION_SYSTEM,
@@ -28,11 +33,20 @@ class Station:
 
     A repeated tick gets the same answer and changes nothing. A tick whose measurements did not all
     arrive gets none: the robot will repeat it. Everything else that arrives is passed over, and so
-    is every other sender once a robot was heard. The first tick heard is tick 0 of section 3.
+    is every other sender once a robot was heard. A robot first heard at tick 0 starts where the
+    station was told; one that is already under way is taken over from a standstill (`joining`),
+    and the tick at which its pose is known is tick 0 of section 3.
     """
 
-    def __init__(self, config: StationConfig) -> None:
-        self._controller = Controller(config)
+    def __init__(
+        self,
+        config: StationConfig,
+        controller: Callable[[StationConfig], Controller] = Controller,
+    ) -> None:
+        self._config = config
+        self._make_controller = controller
+        self._controller = controller(config)
+        self._joining: Rest | None = None
         self._sender = Sender(STATION_SYSTEM, STATION_COMPONENT)
         self._receiver = Receiver()
         self._robot: tuple[int, int] | None = None
@@ -43,6 +57,7 @@ class Station:
         self._tick: int | None = None
         self._outcome: End | None = None
         self._closed = False
+        self._measurement_delay: int | None = None
 
     @property
     def outcome(self) -> End | None:
@@ -58,6 +73,16 @@ class Station:
     def tick(self) -> int | None:
         """The last tick that was answered; None before the first."""
         return self._tick
+
+    @property
+    def command_delay(self) -> int:
+        """n [ticks], as the robot's echoes have it; what the station was told before the first."""
+        return self._control.flight.command_delay
+
+    @property
+    def measurement_delay(self) -> int | None:
+        """m [ticks] of the last measurement; None before the first."""
+        return self._measurement_delay
 
     def heartbeat(self) -> bytes:
         """The frame that makes the station known to the robot."""
@@ -112,12 +137,41 @@ class Station:
             return b""
         if self._tick is None:
             self._first = message.tick
+            under_way = message.tick > 0 and self._controller.kind.predicts
+            self._joining = Rest() if under_way else None
         if message.tick == self._tick:
             return self._framed()
         if self._outcome is None and (self._tick is None or message.tick > self._tick):
-            self._step(message.tick, measurements)
+            self._advance(message.tick, measurements)
             return self._framed()
         return b""
+
+    def _advance(self, tick: int, measurements: list[Measurement]) -> None:
+        if self._joining is None:
+            self._step(tick, measurements)
+            return
+        for measurement in measurements:
+            self._joining = observe(self._joining, measurement, self._config.model)
+        if self._joining.known:
+            self._take_over(self._joining)
+            self._step(tick, [])
+        else:
+            self._tick = tick
+            self._answer = [Command(0.0, 0.0, tick, *self._peer, estimates=0)]
+
+    def _take_over(self, rest: Rest) -> None:
+        """From the pose at which the robot stands, with nothing but standstill in flight."""
+        x, P = prior(rest, self._config.model)
+        config = replace(self._config, initial_estimate=x, initial_covariance=P)
+        self._controller = self._make_controller(config)
+        self._control = self._controller.start()
+        self._first = self._tick = rest.tick
+        self._joining = None
+
+    @property
+    def _peer(self) -> tuple[int, int]:
+        assert self._robot is not None, "nobody was heard yet"
+        return self._robot
 
     def _framed(self) -> bytes:
         return b"".join(self._sender.frame(message) for message in self._answer)
@@ -132,15 +186,29 @@ class Station:
             for message in measurements
             if self._first <= message.tick <= tick
         ]
-        self._control = self._controller.answer(control, arrived)
+        if arrived:
+            self._measurement_delay = tick - self._first - arrived[-1].tick
+        self._control = self._controller.answer(control, arrived, self._echoes(tick, measurements))
         self._tick = tick
         self._answer = self._messages(tick, self._control)
 
+    def _echoes(self, tick: int, measurements: list[Measurement]) -> list[Echo]:
+        """The command in force just before each was sampled, by what the robot says of it."""
+        first = self._first
+        return [
+            Echo(
+                message.tick - first - 1,
+                np.array((message.v, message.omega)),
+                message.command_tick - first if message.command_tick >= first else None,
+            )
+            for message in measurements
+            if first < message.tick <= tick
+        ]
+
     def _messages(self, tick: int, control: Control) -> list[Message]:
-        assert self._robot is not None
         estimates = _estimate(tick, control.estimate)
         v, omega, _ = control.drive
-        command = Command(v, omega, tick, *self._robot, estimates=len(estimates))
+        command = Command(v, omega, tick, *self._peer, estimates=len(estimates))
         if control.estimate.x is not None and diverged(control.estimate.x):
             self._outcome = End(tick, EndReason.DIVERGED)
             return [*estimates, self._outcome, command]  # the command closes the answer

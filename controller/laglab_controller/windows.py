@@ -3,9 +3,10 @@
 from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
-from laglab_controller import kalman
 from laglab_controller.kalman import Belief
 from laglab_controller.model import Model, Vector
+from laglab_controller.motion import STILL, Motion, compose, moved
+from laglab_controller.robot import RobotModel
 
 W = TypeVar("W")
 
@@ -32,6 +33,26 @@ class Windows(Protocol[W]):
 
 
 @dataclass(frozen=True)
+class RigidMotions:
+    """For the robot: each window is one Motion, however long."""
+
+    model: RobotModel
+    identity: Motion = STILL
+
+    def over(self, u: Vector) -> Motion:
+        """g_k."""
+        return self.model.motion(u)
+
+    def compose(self, older: Motion, newer: Motion) -> Motion:
+        """One after the other."""
+        return compose(older, newer)
+
+    def carry(self, belief: Belief, window: Motion) -> Belief:
+        """All of (27) over the window at once."""
+        return Belief(*moved(belief.x, belief.P, window))
+
+
+@dataclass(frozen=True)
 class ReplayedInputs:
     """For any model: the inputs themselves, replayed by (27) one by one."""
 
@@ -49,5 +70,5 @@ class ReplayedInputs:
     def carry(self, belief: Belief, window: tuple[Vector, ...]) -> Belief:
         """(27) for each."""
         for u in window:
-            belief, _ = kalman.predict(self.model, belief, u)
+            belief = Belief(*self.model.predict(*belief, u))
         return belief

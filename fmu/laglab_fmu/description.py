@@ -1,26 +1,25 @@
 """Both model descriptions, made from the one table of variables."""
 
 import uuid
+from collections.abc import Sequence
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
+from laglab_fmu.units import TYPES, UNITS, DeclaredType, Unit
 from laglab_fmu.variables import (
     INTEGRATIONS,
     MODEL_NAME,
     REFERENCE,
-    TYPES,
-    UNITS,
     VARIABLES,
-    DeclaredType,
     Kind,
     Role,
-    Unit,
     Variable,
 )
 
 TOKEN = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, repr((VARIABLES, TYPES, UNITS)))) + "}"
 """Says which table a binary was made from; the same for both versions."""
 
+FLEET_NAME = "Fleet"
 DESCRIPTION = "A differential-drive robot with wheel and sensor noise"
 STATES = ("x", "y", "theta")
 DEFAULT_EXPERIMENT = {"startTime": "0", "stopTime": "10", "tolerance": "1e-6", "stepSize": "0.01"}
@@ -50,8 +49,8 @@ def number(value: float) -> str:
     return str(int(value)) if value == int(value) else repr(value)
 
 
-def model_description_2() -> bytes:
-    """modelDescription.xml of FMI 2.0: one robot, no `time`."""
+def model_description_2(sources: Sequence[str]) -> bytes:
+    """modelDescription.xml of FMI 2.0: one robot, no `time`, built of these C files."""
     root = Element(
         "fmiModelDescription",
         fmiVersion="2.0",
@@ -64,7 +63,9 @@ def model_description_2() -> bytes:
         numberOfEventIndicators="0",
     )
     for face in ("ModelExchange", "CoSimulation"):
-        SubElement(root, face, _capabilities_2(face))
+        files = SubElement(SubElement(root, face, _capabilities_2(face)), "SourceFiles")
+        for source in sources:
+            SubElement(files, "File", name=source)
     _units(root)
     definitions = SubElement(root, "TypeDefinitions")
     for declared in TYPES:
@@ -82,7 +83,7 @@ def model_description_2() -> bytes:
     for variable in variables:
         _variable_2(model, variable, index)
     _structure_2(root, variables, index)
-    return _text(root)
+    return xml_text(root)
 
 
 def model_description_3(fleet: bool = False) -> bytes:
@@ -90,7 +91,7 @@ def model_description_3(fleet: bool = False) -> bytes:
     root = Element(
         "fmiModelDescription",
         fmiVersion="3.0",
-        modelName="Fleet" if fleet else MODEL_NAME,
+        modelName=FLEET_NAME if fleet else MODEL_NAME,
         instantiationToken=TOKEN,
         description=DESCRIPTION + (", many at once" if fleet else ""),
         license="MIT",
@@ -112,24 +113,33 @@ def model_description_3(fleet: bool = False) -> bytes:
     for variable in variables:
         _variable_3(model, variable, fleet)
     _structure_3(root, variables)
-    return _text(root)
+    return xml_text(root)
 
 
 def _capabilities_2(face: str) -> dict[str, str]:
-    attributes = {
-        "modelIdentifier": MODEL_NAME,
-        "canNotUseMemoryManagementFunctions": "true",
-    }
-    if face == "CoSimulation":
-        attributes["canHandleVariableCommunicationStepSize"] = "true"
-    return attributes
+    names = (
+        "canNotUseMemoryManagementFunctions",
+        "canGetAndSetFMUstate",
+        "canSerializeFMUstate",
+        "providesDirectionalDerivative",
+    )
+    return _capabilities(face, names)
 
 
 def _capabilities_3(face: str) -> dict[str, str]:
-    attributes = {"modelIdentifier": MODEL_NAME}
+    names = (
+        "canGetAndSetFMUState",
+        "canSerializeFMUState",
+        "providesDirectionalDerivatives",
+        "providesAdjointDerivatives",
+    )
+    return _capabilities(face, names)
+
+
+def _capabilities(face: str, names: tuple[str, ...]) -> dict[str, str]:
     if face == "CoSimulation":
-        attributes["canHandleVariableCommunicationStepSize"] = "true"
-    return attributes
+        names = (*names, "canHandleVariableCommunicationStepSize")
+    return {"modelIdentifier": MODEL_NAME} | dict.fromkeys(names, "true")
 
 
 def _units(root: Element) -> None:
@@ -168,6 +178,8 @@ def _variability(variable: Variable) -> str:
 
 
 def _bounds(variable: Variable) -> dict[str, str]:
+    if variable.kind is Kind.BOOLEAN:
+        return {}
     bounds = {"min": variable.minimum, "max": variable.maximum, "nominal": variable.nominal}
     return {name: number(value) for name, value in bounds.items() if value is not None}
 
@@ -249,7 +261,8 @@ def _structure_3(root: Element, variables: list[Variable]) -> None:
             SubElement(structure, "InitialUnknown", valueReference=str(REFERENCE[variable.name]))
 
 
-def _text(root: Element) -> bytes:
+def xml_text(root: Element) -> bytes:
+    """An XML document, indented."""
     ElementTree.indent(root)
     text: bytes = ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)
     return text + b"\n"

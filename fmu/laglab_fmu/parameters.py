@@ -1,9 +1,10 @@
 """What a robot is told before it starts, and what it says at every tick."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from typing import NamedTuple
 
-from laglab_fmu.variables import INTEGRATIONS
+from laglab_fmu.variables import INTEGRATIONS, REFERENCE
 
 
 @dataclass(frozen=True)
@@ -36,38 +37,34 @@ class RobotParameters:
     wheel_slip: float = 0.0
     """Part of the wheels' motion lost to slip, 0 ... 1."""
 
-    def floats(self) -> dict[str, float]:
-        """The real-valued parameters, by the FMU's names."""
-        axes = ("x", "y", "theta")
-        return {
-            "wheel_radius": self.wheel_radius,
-            "track": self.track,
-            "sample_time": self.sample_time,
-            "wheel_noise_variance": self.wheel_noise_variance,
-            **{
-                f"measurement_variance_{axis}": value
-                for axis, value in zip(axes, self.measurement_variance, strict=True)
-            },
-            **{f"{axis}_start": value for axis, value in zip(axes, self.start, strict=True)},
-            "wheel_speed_max": self.wheel_speed_max,
-            "motor_time_constant": self.motor_time_constant,
-            "wheel_radius_error": self.wheel_radius_error,
-            "track_error": self.track_error,
-            "wheel_slip": self.wheel_slip,
-        }
-
-    def integration_number(self) -> int:
-        """The FMU's number for `integration`.
+    def by_name(self) -> dict[str, float]:
+        """The parameters by the FMU's names, as numbers.
 
         Raises:
-            ValueError: no such integration.
+            ValueError: `integration` is unknown, or a tuple has not three numbers.
         """
+        axes = ("x", "y", "theta")
+        numbers = {
+            f"measurement_variance_{axis}": value
+            for axis, value in zip(axes, self.measurement_variance, strict=True)
+        }
+        numbers |= {f"{axis}_start": value for axis, value in zip(axes, self.start, strict=True)}
+        alike = (field.name for field in fields(self) if field.name in REFERENCE)
+        numbers |= {name: getattr(self, name) for name in alike}
+        return numbers | {"integration": self._integration_number()}
+
+    def _integration_number(self) -> int:
         names = [name for name, _ in INTEGRATIONS]
         if self.integration not in names:
-            raise ValueError(
-                f"integration is {self.integration!r}; it must be one of {', '.join(names)}"
-            )
+            known = ", ".join(names)
+            raise ValueError(f"integration is {self.integration!r}; it must be one of {known}")
         return names.index(self.integration) + 1
+
+
+def values(robots: Sequence[RobotParameters], names: Sequence[str]) -> list[float]:
+    """All robots' values of the first name, then of the next: the order of FMI 3.0 arrays."""
+    rows = [robot.by_name() for robot in robots]
+    return [row[name] for name in names for row in rows]
 
 
 class Reading(NamedTuple):

@@ -1,18 +1,14 @@
 """One robot, stepped a sample at a time."""
 
 import ctypes
-from contextlib import ExitStack
-from types import TracebackType
 from typing import Self
 
-from laglab_fmu.errors import CallError
 from laglab_fmu.parameters import Reading, RobotParameters
-from laglab_fmu.slave import DISCARD, initialize, open_slave
+from laglab_fmu.slave import Slave2, Slave3, fmu_path
+from laglab_fmu.stepper import INPUTS, OUTPUTS, Stepper
 
-INPUTS = ("omega_left", "omega_right")
 
-
-class Robot:
+class Robot(Stepper):
     """The FMU in co-simulation: `with Robot.open(3, parameters) as robot:`."""
 
     @classmethod
@@ -30,21 +26,11 @@ class Robot:
         return cls(version, parameters)
 
     def __init__(self, version: int, parameters: RobotParameters) -> None:
-        with ExitStack() as stack:
-            self._slave = open_slave(version, stack)
-            initialize(self._slave, parameters)
-            self._stack = stack.pop_all()
-        self._inputs = (ctypes.c_double * len(INPUTS))()
-        self._outputs = (ctypes.c_double * len(Reading._fields))()
-        self._time, self._sample_time = ctypes.c_double(), ctypes.c_double()
-        self._set = self._slave.setter(INPUTS, self._inputs)
-        self._do_step = self._slave.stepper(self._time, self._sample_time)
-        self._get = self._slave.getter(Reading._fields, self._outputs)
-        self._start(parameters)
-
-    def _start(self, parameters: RobotParameters) -> None:
-        self._tick = 0
-        self._sample_time.value = parameters.sample_time
+        super().__init__(fmu_path(version), Slave2 if version == 2 else Slave3, [parameters])
+        self._speeds = (ctypes.c_double * len(INPUTS))()
+        self._reading = (ctypes.c_double * len(OUTPUTS))()
+        self.inputs.value = ctypes.addressof(self._speeds)
+        self.outputs.value = ctypes.addressof(self._reading)
 
     def read(self) -> Reading:
         """Pose, last measurement and body speeds now, without moving.
@@ -52,9 +38,8 @@ class Robot:
         Raises:
             CallError: the FMU refused.
         """
-        if self._get() >= DISCARD:
-            raise self._refused()
-        return Reading._make(self._outputs)
+        self.fetch()
+        return Reading._make(self._reading)
 
     def step(self, omega_left: float, omega_right: float) -> Reading:
         """Moves for one sample time with these wheel speeds, in rad/s, and reads.
@@ -62,40 +47,16 @@ class Robot:
         Raises:
             CallError: the FMU refused, for instance a speed that is not finite; nothing moved.
         """
-        self._inputs[0] = omega_left
-        self._inputs[1] = omega_right
-        self._time.value = self._tick * self._sample_time.value
-        if self._set() >= DISCARD or self._do_step() >= DISCARD or self._get() >= DISCARD:
-            raise self._refused()
-        self._tick += 1
-        return Reading._make(self._outputs)
-
-    def _refused(self) -> CallError:
-        message = "; ".join(self._slave.log)
-        self._slave.log.clear()
-        return CallError(f"tick {self._tick}: {message}")
+        self._speeds[0] = omega_left
+        self._speeds[1] = omega_right
+        self.advance()
+        return Reading._make(self._reading)
 
     def reset(self, parameters: RobotParameters) -> None:
         """Starts again, with other parameters, without loading anything anew.
 
         Raises:
+            ValueError: no such integration.
             CallError: the FMU refuses a parameter; reset again with better ones.
         """
-        self._slave.reset()
-        initialize(self._slave, parameters)
-        self._start(parameters)
-
-    def close(self) -> None:
-        """Frees the instance and the library, removes the extracted files. Twice does no harm."""
-        self._stack.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
+        self.restart([parameters])

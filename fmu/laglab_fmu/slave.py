@@ -5,6 +5,7 @@ serve for the life cycle here; the rest calls the functions of the same library 
 """
 
 import ctypes
+import os
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
@@ -18,14 +19,28 @@ from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Slave
 
 from laglab_fmu.compiler import host_platform
-from laglab_fmu.description import TOKEN
+from laglab_fmu.description import FLEET_NAME, TOKEN
 from laglab_fmu.errors import CallError, FmuNotBuiltError
-from laglab_fmu.parameters import RobotParameters
-from laglab_fmu.variables import MODEL_NAME, REFERENCE
+from laglab_fmu.parameters import RobotParameters, values
+from laglab_fmu.variables import MODEL_NAME, REFERENCE, Kind, parameter_names
 
 VERSIONS = (2, 3)
+_SETTERS_2 = {
+    "setReal": parameter_names(Kind.FLOAT64),
+    "setInteger": parameter_names(Kind.INT32) + parameter_names(Kind.ENUMERATION),
+    "setBoolean": parameter_names(Kind.BOOLEAN),
+}
+_SETTERS_3 = {
+    "setFloat64": parameter_names(Kind.FLOAT64),
+    "setInt32": parameter_names(Kind.INT32),
+    "setInt64": parameter_names(Kind.ENUMERATION),
+    "setBoolean": parameter_names(Kind.BOOLEAN),
+}
 DISCARD = 2
 """Statuses from here up mean that a call did not do what it was asked."""
+
+Call = Callable[[], int]
+"""An FMI function with all its arguments; gives its status."""
 
 
 def fmu_path(version: int) -> Path:
@@ -40,6 +55,15 @@ def fmu_path(version: int) -> Path:
     return built(f"{MODEL_NAME}{version}.fmu")
 
 
+def fleet_path() -> Path:
+    """The installed Fleet3.fmu.
+
+    Raises:
+        FmuNotBuiltError: it is not there.
+    """
+    return built(f"{FLEET_NAME}3.fmu")
+
+
 def built(name: str) -> Path:
     """The path of an FMU beside this file, checked to be there."""
     path = Path(__file__).parent / name
@@ -51,20 +75,21 @@ def built(name: str) -> Path:
 
 
 class Slave(Protocol):
-    """What both versions offer; `log` holds what the FMU has logged."""
+    """What both versions offer. Arrays hold all robots' values of one variable, then the next's."""
 
     log: list[str]
+    """What the FMU has logged."""
 
-    def initialize(self, parameters: RobotParameters) -> None: ...
+    def initialize(self, robots: Sequence[RobotParameters]) -> None: ...
     def reset(self) -> None: ...
     def free(self) -> None: ...
-    def setter(self, names: Sequence[str], values: Any) -> Callable[[], int]: ...
-    def getter(self, names: Sequence[str], values: Any) -> Callable[[], int]: ...
-    def stepper(self, time: ctypes.c_double, step: ctypes.c_double) -> Callable[[], int]: ...
+    def setter(self, names: Sequence[str], array: ctypes.c_void_p, size: int) -> Call: ...
+    def getter(self, names: Sequence[str], array: ctypes.c_void_p, size: int) -> Call: ...
+    def stepper(self, time: ctypes.c_double, step: ctypes.c_double) -> Call: ...
 
 
 class Slave2:
-    """FMI 2.0."""
+    """FMI 2.0: one robot."""
 
     def __init__(self, folder: str) -> None:
         platform = host_platform()
@@ -78,17 +103,12 @@ class Slave2:
         with _unloading_on_failure(self.fmu):
             self.fmu.instantiate(callbacks=self.callbacks)
 
-    def _logged(
-        self, _environment: Any, _name: bytes, _status: int, _category: bytes, message: bytes
-    ) -> None:
-        self.log.append(message.decode().replace("%%", "%"))
+    def _logged(self, _where: Any, _name: bytes, _status: int, _kind: bytes, text: bytes) -> None:
+        self.log.append(text.decode().replace("%%", "%"))
 
-    def initialize(self, parameters: RobotParameters) -> None:
-        floats = parameters.floats()
-        self.fmu.setReal([REFERENCE[name] for name in floats], list(floats.values()))
-        integers = [REFERENCE["seed"], REFERENCE["integration"]]
-        self.fmu.setInteger(integers, [parameters.seed, parameters.integration_number()])
-        self.fmu.setBoolean([REFERENCE["noise"]], [parameters.noise])
+    def initialize(self, robots: Sequence[RobotParameters]) -> None:
+        for setter, names in _SETTERS_2.items():
+            getattr(self.fmu, setter)([REFERENCE[name] for name in names], values(robots, names))
         self.fmu.setupExperiment(startTime=0.0)
         self.fmu.enterInitializationMode()
         self.fmu.exitInitializationMode()
@@ -99,37 +119,38 @@ class Slave2:
     def free(self) -> None:
         self.fmu.freeInstance()
 
-    def setter(self, names: Sequence[str], values: Any) -> Callable[[], int]:
-        return self._call("fmi2SetReal", *_references(names), values)
+    def setter(self, names: Sequence[str], array: ctypes.c_void_p, _size: int) -> Call:
+        return self._call("fmi2SetReal", *_references(names), array)
 
-    def getter(self, names: Sequence[str], values: Any) -> Callable[[], int]:
-        return self._call("fmi2GetReal", *_references(names), values)
+    def getter(self, names: Sequence[str], array: ctypes.c_void_p, _size: int) -> Call:
+        return self._call("fmi2GetReal", *_references(names), array)
 
-    def stepper(self, time: ctypes.c_double, step: ctypes.c_double) -> Callable[[], int]:
+    def stepper(self, time: ctypes.c_double, step: ctypes.c_double) -> Call:
         return self._call("fmi2DoStep", time, step, ctypes.c_int(1))
 
-    def _call(self, name: str, *arguments: Any) -> Callable[[], int]:
+    def _call(self, name: str, *arguments: Any) -> Call:
         return partial(self.fmu.dll[name], ctypes.c_void_p(self.fmu.component), *arguments)
 
 
 class Slave3:
-    """FMI 3.0."""
+    """FMI 3.0: one robot or a fleet."""
 
-    def __init__(self, folder: str) -> None:
+    def __init__(self, folder: str, robots: int | None = None) -> None:
         self.log: list[str] = []
         self.fmu = FMU3Slave(guid=TOKEN, modelIdentifier=MODEL_NAME, unzipDirectory=folder)
         with _unloading_on_failure(self.fmu):
             self.fmu.instantiate(logMessage=self._logged)
+        if robots is not None:
+            self.fmu.enterConfigurationMode()
+            self.fmu.setUInt64([REFERENCE["robots"]], [robots])
+            self.fmu.exitConfigurationMode()
 
     def _logged(self, _environment: Any, _status: int, _category: bytes, message: bytes) -> None:
         self.log.append(message.decode())
 
-    def initialize(self, parameters: RobotParameters) -> None:
-        floats = parameters.floats()
-        self.fmu.setFloat64([REFERENCE[name] for name in floats], list(floats.values()))
-        self.fmu.setInt32([REFERENCE["seed"]], [parameters.seed])
-        self.fmu.setInt64([REFERENCE["integration"]], [parameters.integration_number()])
-        self.fmu.setBoolean([REFERENCE["noise"]], [parameters.noise])
+    def initialize(self, robots: Sequence[RobotParameters]) -> None:
+        for setter, names in _SETTERS_3.items():
+            getattr(self.fmu, setter)([REFERENCE[name] for name in names], values(robots, names))
         self.fmu.enterInitializationMode(startTime=0.0)
         self.fmu.exitInitializationMode()
 
@@ -139,23 +160,27 @@ class Slave3:
     def free(self) -> None:
         self.fmu.freeInstance()
 
-    def setter(self, names: Sequence[str], values: Any) -> Callable[[], int]:
-        return self._call(
-            "fmi3SetFloat64", *_references(names), values, ctypes.c_size_t(len(values))
-        )
+    def setter(self, names: Sequence[str], array: ctypes.c_void_p, size: int) -> Call:
+        return self._on_array("fmi3SetFloat64", names, array, size)
 
-    def getter(self, names: Sequence[str], values: Any) -> Callable[[], int]:
-        return self._call(
-            "fmi3GetFloat64", *_references(names), values, ctypes.c_size_t(len(values))
-        )
+    def getter(self, names: Sequence[str], array: ctypes.c_void_p, size: int) -> Call:
+        return self._on_array("fmi3GetFloat64", names, array, size)
 
-    def stepper(self, time: ctypes.c_double, step: ctypes.c_double) -> Callable[[], int]:
+    def _on_array(self, call: str, names: Sequence[str], array: ctypes.c_void_p, size: int) -> Call:
+        return self._call(call, *_references(names), array, ctypes.c_size_t(size))
+
+    def stepper(self, time: ctypes.c_double, step: ctypes.c_double) -> Call:
         flags = [ctypes.byref(ctypes.c_bool()) for _ in range(3)]
         last = ctypes.byref(ctypes.c_double())
         return self._call("fmi3DoStep", time, step, ctypes.c_bool(True), *flags, last)
 
-    def _call(self, name: str, *arguments: Any) -> Callable[[], int]:
+    def _call(self, name: str, *arguments: Any) -> Call:
         return partial(self.fmu.dll[name], ctypes.c_void_p(self.fmu.component), *arguments)
+
+
+def _references(names: Sequence[str]) -> tuple[Any, ctypes.c_size_t]:
+    references = (ctypes.c_uint32 * len(names))(*(REFERENCE[name] for name in names))
+    return references, ctypes.c_size_t(len(names))
 
 
 @contextmanager
@@ -168,30 +193,27 @@ def _unloading_on_failure(fmu: FMU2Slave | FMU3Slave) -> Iterator[None]:
         raise
 
 
-def _references(names: Sequence[str]) -> tuple[Any, ctypes.c_size_t]:
-    references = (ctypes.c_uint32 * len(names))(*(REFERENCE[name] for name in names))
-    return references, ctypes.c_size_t(len(names))
-
-
-def open_slave(version: int, stack: ExitStack) -> Slave:
-    """Extracts the FMU, loads it and makes an instance; `stack` undoes all of it.
+def open_slave(path: Path, make: Callable[[str], Slave], stack: ExitStack) -> Slave:
+    """Extracts an FMU and makes an instance out of its folder; `stack` undoes both.
 
     Raises:
-        FmuNotBuiltError, CallError: it is not there, or it does not start.
+        CallError: it does not start.
     """
-    folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="laglab-fmu-"))
+    folder = tempfile.TemporaryDirectory(prefix="laglab-fmu-")
+    stack.callback(folder.cleanup)
     try:
-        fmpy.extract(fmu_path(version), folder)
-        slave: Slave = Slave2(folder) if version == 2 else Slave3(folder)
+        fmpy.extract(path, folder.name)
+        slave = make(folder.name)
     except Exception as error:  # fmpy raises nothing narrower
-        raise CallError(
-            f"{fmu_path(version)} does not start ({error}); run `laglab fmu build`"
-        ) from error
+        raise CallError(f"{path} does not start ({error}); run `laglab fmu build`") from error
     stack.callback(slave.free)
+    if os.name == "posix":
+        # A loaded library needs its file no more, and a process that is killed cleans nothing up.
+        folder.cleanup()
     return slave
 
 
-def initialize(slave: Slave, parameters: RobotParameters) -> None:
+def initialize(slave: Slave, robots: Sequence[RobotParameters]) -> None:
     """Gives a fresh or reset instance its parameters and starts it.
 
     Raises:
@@ -199,6 +221,6 @@ def initialize(slave: Slave, parameters: RobotParameters) -> None:
     """
     slave.log.clear()
     try:
-        slave.initialize(parameters)
+        slave.initialize(robots)
     except FMICallException as error:
         raise CallError("; ".join(slave.log) or str(error)) from error

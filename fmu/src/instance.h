@@ -101,6 +101,26 @@ int64_t instance_integer(const Instance *instance, const Variable *variable, siz
 Status instance_check_integer(const Instance *instance, const Variable *variable, int64_t value, const char *call);
 Status instance_set_integer(Instance *instance, const Variable *variable, size_t robot, int64_t value);
 
+/* Saved states: `*state` is NULL or an earlier one to write over. Serialized ones carry a checksum. */
+typedef struct SavedState SavedState;
+Status instance_save(const Instance *instance, SavedState **state);
+Status instance_restore(Instance *instance, const SavedState *state);
+size_t state_size(const SavedState *state);
+Status state_serialize(const Instance *instance, const SavedState *state, unsigned char bytes[], size_t size);
+Status state_deserialize(const Instance *instance, const unsigned char bytes[], size_t size, SavedState **state);
+
+/* Variables between which partial derivatives are asked for. */
+typedef struct {
+    const uint32_t *unknowns, *knowns;
+    size_t unknown_count, known_count;
+} Partials;
+
+/* sensitivity of the unknowns = J seed; the adjoint: sensitivity of the knowns = J' seed. */
+Status instance_directional(Instance *instance, const Partials *partials, const double seed[], double sensitivity[],
+                            const char *call);
+Status instance_adjoint(Instance *instance, const Partials *partials, const double seed[], double sensitivity[],
+                        const char *call);
+
 /* Model exchange: continuous states are all x, then all y, then all theta. */
 void instance_get_states(const Instance *instance, double states[]);
 Status instance_set_states(Instance *instance, const double states[]);

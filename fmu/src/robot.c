@@ -1,6 +1,7 @@
 #include "robot.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "noise.h"
 
@@ -13,21 +14,35 @@ static double clamp(double value, double limit) {
     return value > limit ? limit : value < -limit ? -limit : value;
 }
 
+/* What is left of a difference between command and drive speed after one sample. */
+static double lag(const Robot *robot) {
+    return robot->motor_time_constant > 0 ? exp(-robot->sample_time / robot->motor_time_constant) : 0.0;
+}
+
 /* Speed of a wheel drive under command: a first-order lag, sampled; without a time constant it is the command. */
 static double drive_speed(const Robot *robot, double reached, double commanded) {
     if (robot->wheel_speed_max > 0) {
         commanded = clamp(commanded, robot->wheel_speed_max);
     }
-    if (robot->motor_time_constant > 0) {
-        return commanded + (reached - commanded) * exp(-robot->sample_time / robot->motor_time_constant);
-    }
-    return commanded;
+    return robot->motor_time_constant > 0 ? commanded + (reached - commanded) * lag(robot) : commanded;
+}
+
+static double drive_slope(const Robot *robot, double commanded) {
+    const int limited = robot->wheel_speed_max > 0 && fabs(commanded) > robot->wheel_speed_max;
+    return limited ? 0.0 : 1.0 - lag(robot);
+}
+
+static double true_radius(const Robot *robot) {
+    return robot->wheel_radius * (1.0 + robot->wheel_radius_error);
+}
+
+static double true_track(const Robot *robot) {
+    return robot->track * (1.0 + robot->track_error);
 }
 
 void robot_speeds(Robot *robot) {
     const double grip = 1.0 - robot->wheel_slip;
-    const double r = robot->wheel_radius * (1.0 + robot->wheel_radius_error);
-    const double L = robot->track * (1.0 + robot->track_error);
+    const double r = true_radius(robot), L = true_track(robot);
     const double left = drive_speed(robot, robot->drive_left, robot->omega_left) + robot->wheel_noise_left;
     const double right = drive_speed(robot, robot->drive_right, robot->omega_right) + robot->wheel_noise_right;
     /* (1) v = r (w_R + w_L) / 2, omega = r (w_R - w_L) / L */
@@ -39,6 +54,27 @@ void robot_derivatives(Robot *robot) {
     robot->der_x = robot->v * cos(robot->theta);
     robot->der_y = robot->v * sin(robot->theta);
     robot->der_theta = robot->omega;
+}
+
+/* With T, A_k = I + T (der by x, y, theta) is (31) and W_k = T (der by the wheels) is (32), columns left, right. */
+void robot_partials(const Robot *robot, double partial[UNKNOWNS][KNOWNS]) {
+    const double grip = 1.0 - robot->wheel_slip;
+    const double r = true_radius(robot), L = true_track(robot);
+    const double left = drive_slope(robot, robot->omega_left), right = drive_slope(robot, robot->omega_right);
+    const double c = cos(robot->theta), s = sin(robot->theta);
+    const double v_by_left = grip * r / 2.0 * left, v_by_right = grip * r / 2.0 * right;
+    const double omega_by_left = -grip * r / L * left, omega_by_right = grip * r / L * right;
+    const double table[UNKNOWNS][KNOWNS] = {
+        [OF_X] = {[BY_X] = 1.0},
+        [OF_Y] = {[BY_Y] = 1.0},
+        [OF_THETA] = {[BY_THETA] = 1.0},
+        [OF_V] = {0, 0, 0, v_by_left, v_by_right},
+        [OF_OMEGA] = {0, 0, 0, omega_by_left, omega_by_right},
+        [OF_DER_X] = {0, 0, -robot->v * s, c * v_by_left, c * v_by_right},
+        [OF_DER_Y] = {0, 0, robot->v * c, s * v_by_left, s * v_by_right},
+        [OF_DER_THETA] = {0, 0, 0, omega_by_left, omega_by_right},
+    };
+    memcpy(partial, table, sizeof table);
 }
 
 /* (3) x <- x + T v cos theta, y <- y + T v sin theta, theta <- theta + T omega */

@@ -34,7 +34,7 @@ class Channel(Generic[M]):
     ) -> None:
         if delay < 0:
             raise ValueError(f"a delay is a number of ticks, 0 or more, not {delay}")
-        self.log: list[LinkRow] = []
+        self._log: list[LinkRow] = []
         self._direction = direction
         self._delay = delay
         self._sample_time = sample_time
@@ -58,6 +58,11 @@ class Channel(Generic[M]):
             due.append(heapq.heappop(self._waiting)[2])
         return due
 
+    def take_log(self) -> list[LinkRow]:
+        """What was done to every frame since the last call."""
+        log, self._log = self._log, []
+        return log
+
     def _hold(self, tick: int, message: M, extra_ticks: int) -> None:
         self._entered += 1
         due = tick + self._delay + extra_ticks
@@ -68,7 +73,7 @@ class Channel(Generic[M]):
         raw = self._sender.frame(message)
         for copy, fate in enumerate(fates.of(tick, tick * self._sample_time, raw)):
             row = LinkRow(self._direction, tick, number, copy, len(raw), fate.kind, fate.extra)
-            self.log.append(row)
+            self._log.append(row)
             received = _received(fate.kind, message, fate.raw)
             if received is not None:
                 extra = math.ceil(fate.extra / self._sample_time - ROUNDING)

@@ -49,16 +49,16 @@ class Conversation:
         endpoint: Link,
         recorder: Recorder,
         patience: Patience,
+        watch: Watch,
         now: Callable[[], float] = monotonic,
-        watch: Watch | None = None,
     ) -> None:
         self.now = now
         self._gateway = gateway
         self._endpoint = endpoint
         self._recorder = recorder
         self._patience = patience
-        self._heard = now()
-        self._watch = watch or Watch(gateway.services, [])
+        self._watch = watch
+        self._heard, self._heard_tick = now(), 0
 
     def wait_for_station(self) -> None:
         """Until the station's first heartbeat. Raises StationSilentError."""
@@ -81,16 +81,15 @@ class Conversation:
         frames = self._gateway.receive(data, whole=self._endpoint.datagrams or not data)
         if any(from_station(frame) for frame in frames):
             self._endpoint.accept_peer()
-            self._heard = self.now()
+            self._heard, self._heard_tick = self.now(), self._gateway.tick
         self._recorder.frames(self._gateway.time_us, [frame.raw for frame in frames])
-        if not self._gateway.answered:
-            self.look_around()
+        self._reply()
+        if not data:
+            self._watch.poll(self._gateway.state)
 
-    def look_around(self) -> None:
-        """Send what others than the station asked for, and look after those who watch."""
-        if notices := self._gateway.take_notices():
-            self.send(notices)
-        self._watch.poll(self._gateway.state)
+    def _reply(self) -> None:
+        if replies := self._gateway.take_replies():
+            self.send(replies)
 
     def listen_for(self, done: Callable[[], bool]) -> bool:
         """Listen until `done`, or until it is time to repeat: then False."""
@@ -105,15 +104,18 @@ class Conversation:
         """Raises StationSilentError when the station has been silent for longer than allowed."""
         silence = self.now() - self._heard
         if silence > self._patience.silence:
-            raise StationSilentError(self._gateway.tick, silence)
+            raise StationSilentError(self._heard_tick, silence)
 
     def finish_tick(self) -> int:
-        """Close the tick, record it, look after everybody else; returns the tick."""
+        """Close the tick, record it, tell everybody of what the robot did; returns the tick."""
         row = self._gateway.close_tick()
         self._recorder.row(row)
         if rows := self._gateway.take_link_rows():
             self._recorder.link(rows)
-        self.look_around()
+        if notices := self._gateway.take_notices():
+            self._watch.tell(notices)
+            self._reply()
+        self._watch.poll(self._gateway.state)
         return row.tick
 
     def say_goodbye(self, outcome: Outcome) -> None:

@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 from laglab_gateway.audit import Audit, DirectionAudit
 from laglab_gateway.channel import Channel
-from laglab_gateway.drive import Drive, Safety, follow, refusal, speeds, watch
-from laglab_gateway.fates import Fates
+from laglab_gateway.drive import Drive, Safety, follow, refusal, speeds, supervise
+from laglab_gateway.fates import Fates, Kind
 from laglab_gateway.linklog import LinkRow
 from laglab_gateway.plant import Plant
 from laglab_gateway.services import RobotState, Services, standard_parameters
@@ -73,8 +73,8 @@ class Gateway:
         plant: Plant,
         config: GatewayConfig,
         fates: Mapping[Direction, Fates] | None = None,
-        codec: Codec | None = None,
         services: Services | None = None,
+        codec: Codec | None = None,
     ) -> None:
         n, m, Ts = config.command_delay, config.measurement_delay, config.sample_time
         self.tick = 0
@@ -84,9 +84,10 @@ class Gateway:
         self.audit = Audit(DirectionAudit(n), DirectionAudit(m))
         self._config = config
         self._plant = plant
-        self.services = services or Services(standard_parameters(n, m, config.safety))
         codec = codec or Codec(ROBOT_SYSTEM, ROBOT_COMPONENT)
         self._sender, self._receiver = codec.sender, codec.receiver
+        self.services = services or Services(standard_parameters(n, m, config.safety))
+        self._replies: list[Message] = []
         self._notices: list[Message] = []
         fates = fates or {}
         self._commands: Channel[Command] = Channel("command", n, Ts, fates.get("command"))
@@ -114,8 +115,10 @@ class Gateway:
     @property
     def state(self) -> RobotState:
         """The robot at this tick, for those who ask."""
-        x, y, theta, _, _, _, v, omega = self._reading
-        return RobotState(self.time_us, x, y, theta, v, omega)
+        reading = self._reading
+        return RobotState(
+            self.time_us, reading.x, reading.y, reading.theta, reading.v, reading.omega
+        )
 
     @property
     def answered(self) -> bool:
@@ -147,7 +150,7 @@ class Gateway:
             frames += self._receiver.end_datagram()
         for frame in frames:
             if not from_station(frame) or not self._take(frame.message):
-                self._notices += self.services.answer(frame, self.state)
+                self._replies += self.services.answer(frame, self.state)
         return frames
 
     def _take(self, message: Message) -> bool:
@@ -155,22 +158,19 @@ class Gateway:
         match message:
             case Heartbeat():
                 self.connected = True
-            case Estimate(tick=tick):
-                if tick == self.tick and not self.answered:
-                    self._estimates.append(message)
-            case Command():
-                self._take_command(message)
+            case Estimate() if message.tick == self.tick and not self.answered:
+                self._estimates.append(message)
+            case Command() if message.tick == self.tick and not self.answered:
+                self._take_answer(message)
+            case Command() if self._answered_through < message.tick < self.tick:
+                self._push(message)
+            case Command() | Estimate():
+                pass  # said again, or of a tick that has not come
             case End():
                 self.station_end = message
             case _:
                 return False
         return True
-
-    def _take_command(self, command: Command) -> None:
-        if command.tick == self.tick and not self.answered:
-            self._take_answer(command)
-        elif self._answered_through < command.tick < self.tick:
-            self._push(command)
 
     def _take_answer(self, command: Command) -> None:
         if len(self._estimates) < command.estimates:
@@ -191,10 +191,11 @@ class Gateway:
                 self.audit.refused[refused] += 1
             else:
                 self._drive = follow(command, k)
-        watched = watch(self._drive, k, Ts, safety)
-        if watched.mode is not self._drive.mode:
-            self._announce_stop(safety.link_timeout)
-        self._drive = watched
+        supervised = supervise(self._drive, k, Ts, safety)
+        if supervised.mode is not self._drive.mode:
+            self.audit.stops.append(k)
+            self.announce(f"no fresh command for {safety.link_timeout} s: stopping")
+        self._drive = supervised
         armed = self.services.arming.armed
         self._speeds = speeds(self._drive, k, Ts, safety) if armed else (0.0, 0.0)
 
@@ -204,22 +205,27 @@ class Gateway:
         limits = (now["V_MAX"] or None, now["OMEGA_MAX"] or None)
         return Safety(*limits, now["LINK_TIMEOUT"], self._config.safety.ramp)
 
-    def _announce_stop(self, link_timeout: float) -> None:
-        self.audit.stops.append(self.tick)
-        text = f"no fresh command for {link_timeout} s: stopping"
-        self._notices.append(Statustext(MAV_SEVERITY_WARNING, text.encode()))
+    def announce(self, text: str) -> None:
+        """Warn everybody who listens, in at most 50 characters, at the end of this tick."""
+        self._notices.append(Statustext(MAV_SEVERITY_WARNING, text.encode()[:50]))
 
-    def take_notices(self) -> list[bytes]:
-        """Answers to requests since the last call, and what the robot did by itself, in frames."""
+    def take_replies(self) -> list[bytes]:
+        """The frames that answer requests since the last call: not of the loop, to be sent too."""
+        replies, self._replies = self._replies, []
+        return [self._sender.frame(message) for message in replies]
+
+    def take_notices(self) -> list[Message]:
+        """What the robot did by itself since the last call: everybody is told."""
         notices, self._notices = self._notices, []
-        return [self._sender.frame(message) for message in notices]
+        self._replies += notices
+        return notices
 
     def take_link_rows(self) -> list[LinkRow]:
         """What the link did to the frames that entered it since the last call."""
-        rows = [*self._measurements.log, *self._commands.log]
-        self._measurements.log.clear()
-        self._commands.log.clear()
-        return rows
+        measurements, commands = self._measurements.take_log(), self._commands.take_log()
+        self.audit.measurement.fates.update(Kind(row.fate) for row in measurements)
+        self.audit.command.fates.update(Kind(row.fate) for row in commands)
+        return [*measurements, *commands]
 
     def close_tick(self) -> TraceRow:
         """Step to k + 1, unless the run ends at k; says what happened at k."""

@@ -75,7 +75,7 @@ def follow(command: Command, tick: int) -> Drive:
     return Drive(Mode.DRIVING, command.v, command.omega, command.tick, tick)
 
 
-def watch(drive: Drive, tick: int, sample_time: float, safety: Safety) -> Drive:
+def supervise(drive: Drive, tick: int, sample_time: float, safety: Safety) -> Drive:
     """The drive at `tick` if nothing fresh has come: after `link_timeout` it stops."""
     if drive.mode is not Mode.DRIVING:
         return drive

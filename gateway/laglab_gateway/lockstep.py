@@ -14,10 +14,11 @@ def serve_lockstep(
     endpoint: Link,
     recorder: Recorder,
     patience: Patience,
+    watch: Watch,
     progress: Callable[[int], None],
-    watch: Watch | None = None,
 ) -> Outcome:
     """Run a gateway to its last tick; `progress` is told of each tick that is over.
+
     Those who `watch` are looked after meanwhile.
 
     Ctrl-C ends the run in order: the station is told and the outcome says INTERRUPTED.
@@ -26,7 +27,7 @@ def serve_lockstep(
         StationSilentError: the station never came, or fell silent.
         EndpointError: the link itself broke.
     """
-    conversation = Conversation(gateway, endpoint, recorder, patience, watch=watch)
+    conversation = Conversation(gateway, endpoint, recorder, patience, watch)
     try:
         conversation.wait_for_station()
         while gateway.outcome is None:

@@ -26,10 +26,14 @@ class Lateness:
     def __init__(self, period: float) -> None:
         self._period = period
         self._seconds: list[float] = []
+        self._missed = 0
 
-    def add(self, seconds: float) -> None:
-        """One more tick."""
+    def add(self, seconds: float) -> bool:
+        """One more tick; True when it is the first that missed its deadline."""
         self._seconds.append(seconds)
+        first = seconds > self._period and not self._missed
+        self._missed += seconds > self._period
+        return first
 
     def report(self) -> dict[str, Any]:
         """For the summary; a deadline is missed when the tick began a whole period late."""
@@ -39,7 +43,7 @@ class Lateness:
             "p50_s": float(p50),
             "p99_s": float(p99),
             "max_s": float(late.max()),
-            "missed_deadlines": int((late > self._period).sum()),
+            "missed_deadlines": self._missed,
         }
 
 
@@ -48,19 +52,18 @@ def serve_realtime(
     endpoint: Link,
     recorder: Recorder,
     patience: Patience,
+    watch: Watch,
     progress: Callable[[int], None],
     period: float,
     now: Callable[[], float] = monotonic,
-    watch: Watch | None = None,
 ) -> tuple[Outcome, Lateness]:
     """Run a gateway to its last tick, one tick every `period` [s] of the clock `now`.
-    Those who `watch` are looked after meanwhile.
 
     Raises:
         StationSilentError: the station never came, or fell silent for longer than allowed.
         EndpointError: the link itself broke.
     """
-    conversation = Conversation(gateway, endpoint, recorder, patience, now, watch)
+    conversation = Conversation(gateway, endpoint, recorder, patience, watch, now)
     lateness = Lateness(period)
     try:
         conversation.wait_for_station()
@@ -68,7 +71,8 @@ def serve_realtime(
         while gateway.outcome is None:
             deadline = start + gateway.tick * period
             late = now() - deadline
-            lateness.add(late)
+            if lateness.add(late):
+                gateway.announce(f"cannot keep up: tick {gateway.tick} is {late:.3f} s late")
             conversation.send(gateway.open_tick())
             gateway.settle()
             answer = _listen_until(deadline + period, gateway, conversation)

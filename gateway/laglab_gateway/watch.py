@@ -4,7 +4,7 @@ from time import monotonic_ns
 from typing import NamedTuple
 
 from laglab_gateway.services import RobotState, Services
-from laglab_protocol import Codec, Endpoint
+from laglab_protocol import Codec, Endpoint, Message
 
 POLL_US = 20_000
 """How often they are looked after; in between the loop is not held up for them."""
@@ -41,9 +41,13 @@ class Watch:
         telemetry = self._services.due(state, now_us)
         for watcher in self._watchers:
             self._hear(watcher, state)
-            sender = watcher.codec.sender
-            for message in telemetry:
-                watcher.endpoint.send(sender.frame(message))
+        self.tell(telemetry)
+
+    def tell(self, messages: list[Message]) -> None:
+        """Send them what they did not ask for."""
+        for endpoint, codec in self._watchers:
+            for message in messages:
+                endpoint.send(codec.sender.frame(message))
 
     def _hear(self, watcher: Watcher, state: RobotState) -> None:
         endpoint, codec = watcher

@@ -4,7 +4,7 @@ import sys
 
 import typer
 
-from laglab.commands import compare, fmu, run, scenarios, sides
+from laglab.commands import compare, errata, fmu, run, scenarios, sides
 from laglab.errors import LaglabError, RunError, ScenarioError
 from laglab.processes import SIDE_ERRORS
 from laglab_controller import StationError
@@ -21,6 +21,7 @@ app = typer.Typer(
 app.command("run")(run.run)
 app.command("scenarios")(scenarios.scenarios)
 app.command("compare")(compare.compare)
+app.command("errata")(errata.errata)
 app.command("gateway")(sides.gateway)
 app.command("controller")(sides.controller)
 app.add_typer(fmu.app, name="fmu")

@@ -40,6 +40,13 @@ OVERRIDES: dict[str, Any] = {
     ],
     "pace": Annotated[str | None, _option("--pace", help="lockstep, or realtime.")],
     "speed": Annotated[float | None, _option("--speed", help="Real time so many times as fast.")],
+    "silence_timeout": Annotated[
+        float | None, _option("--silence", help="Seconds until a silent side counts as gone.")
+    ],
+    "timeline": Annotated[
+        str | None,
+        _option("--timeline", help="What the link does when: TOML, or a run's link.csv."),
+    ],
     "fmi": Annotated[int | None, _option("--fmi", help="The FMU's FMI version, 2 or 3.")],
 }
 """Scenario field → its command-line option."""

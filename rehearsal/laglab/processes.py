@@ -89,7 +89,7 @@ def gateway_process(scenario: Scenario, url: str, directory: Path, reports: Conn
             open_endpoint(url) as endpoint,
         ):
             reports.send(Listening(endpoint.name))
-            patience = Patience(connect=30.0)
+            patience = Patience(silence=scenario.silence_timeout, connect=30.0)
             outcome, statistics = serve(scenario, gateway, endpoint, recorder, patience, clock)
         reports.send(Finished(outcome, clock.seconds, statistics))
     except SIDE_ERRORS as error:
@@ -100,7 +100,7 @@ def station_process(scenario: Scenario, url: str, reports: Connection) -> None:
     """The remote station's side."""
     try:
         with open_endpoint(url) as endpoint:
-            run_station(Station(station_config(scenario)), endpoint)
+            run_station(Station(station_config(scenario)), endpoint, scenario.silence_timeout)
     except SIDE_ERRORS as error:
         reports.send(Failed(str(error)))
 

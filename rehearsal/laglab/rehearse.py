@@ -30,8 +30,8 @@ from laglab_gateway import FileRecorder, Outcome, Patience
 Transport = Literal["inline", "udp", "serial"]
 
 SCENARIO_FILE = "scenario.toml"
-NOTICE_SECONDS = 4.0
-"""What a gateway needs to find that its station is silent, and a little more."""
+NOTICE_SECONDS = 1.0
+"""What a gateway needs, besides the silence timeout, to say that its station is silent."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +85,7 @@ def far_end(address: str) -> str:
 def _two_processes(
     scenario: Scenario, url: str, directory: Path, progress: Callable[[int], None]
 ) -> Ending:
+    notice = scenario.silence_timeout + NOTICE_SECONDS
     with started("gateway", gateway_process, scenario, url, directory) as gateway:
         match gateway.next_report():
             case Listening(address):
@@ -93,21 +94,21 @@ def _two_processes(
                 return _ending(report, [], 0.0)
         with started("controller", station_process, scenario, station_url) as station:
             try:
-                return _follow(gateway, station, progress)
+                return _follow(gateway, station, notice, progress)
             except KeyboardInterrupt:
                 gateway.stop()
-                return _follow(gateway, station, progress)
+                return _follow(gateway, station, notice, progress)
 
 
-def _follow(gateway: Side, station: Side, progress: Callable[[int], None]) -> Ending:
+def _follow(gateway: Side, station: Side, notice: float, progress: Callable[[int], None]) -> Ending:
     """Read both sides' reports until the gateway's last one.
 
-    A gateway whose station is gone gets the time to notice and say so, and no more.
+    A gateway whose station is gone gets `notice` seconds to find and say so, and no more.
     """
     problems: list[str] = []
     loop_seconds = 0.0
     watched = [gateway.reports, station.reports]
-    while ready := wait(watched, timeout=NOTICE_SECONDS if problems else None):
+    while ready := wait(watched, timeout=notice if problems else None):
         if station.reports in ready:
             watched.remove(station.reports)
             if isinstance(report := station.next_report(), Failed):

@@ -71,12 +71,60 @@ def results_table(summary: dict[str, Any]) -> Table:
         "pose error at the end": f"ρ {final['rho']:.3g} m, θ {final['theta_error']:.3g} rad",
         "speeds at the end": f"v {final['v']:.3g} m/s, ω {final['omega']:.3g} rad/s",
         **{f"RMS error of {name}": _errors(errors) for name, errors in estimated.items()},
+        **_link_rows(summary.get("link", {})),
+        **_timing_row(summary.get("timing")),
         "speed": f"{summary['ticks']} ticks in {summary['wall_time_s']:.2f} s"
         + (f", {factor:.1f} × real time" if factor else ""),
     }
     for name, value in rows.items():
         table.add_row(name, value)
     return table
+
+
+def _link_rows(audit: dict[str, Any]) -> dict[str, str]:
+    """The delay audit, as far as there is anything to say beyond the configured delays."""
+    rows = {f"{name}s": _direction(audit[name]) for name in ("command", "measurement") if audit}
+    refused = ", ".join(f"{count} {why}" for why, count in audit.get("refused", {}).items())
+    stops = ", ".join(str(tick) for tick in audit.get("failsafe_stops", []))
+    if refused:
+        rows["refused commands"] = refused
+    if stops:
+        rows["failsafe stops at ticks"] = stops
+    return rows
+
+
+def _direction(audit: dict[str, Any]) -> str:
+    measured, lost = audit["measured"], sum(audit["lost"].values())
+    if measured is None:
+        return "none arrived"
+    delay = f"{measured['mean']:.1f} ticks late ({measured['min']} to {measured['max']})"
+    causes = ", ".join(f"{count} {cause}" for cause, count in audit["lost"].items())
+    return (
+        f"{audit['arrived']} arrived, {delay}"
+        + (f"; lost {lost}: {causes}" if lost else "")
+        + (f"; {audit['reordered']} out of order" if audit["reordered"] else "")
+    )
+
+
+def _timing_row(timing: dict[str, Any] | None) -> dict[str, str]:
+    if timing is None:
+        return {}
+    p50, p99, worst = (1e3 * timing[key] for key in ("p50_s", "p99_s", "max_s"))
+    return {
+        "lateness of ticks": f"p50 {p50:.2f} ms, p99 {p99:.2f} ms, max {worst:.2f} ms; "
+        f"{timing['missed_deadlines']} deadlines missed"
+    }
+
+
+def warnings(summary: dict[str, Any]) -> list[str]:
+    """What the reader must not overlook."""
+    missed = summary.get("timing", {}).get("missed_deadlines", 0)
+    if not missed:
+        return []
+    return [
+        f"{missed} of {summary['ticks']} ticks began more than a tick late: this machine cannot "
+        "keep up; take a smaller --speed"
+    ]
 
 
 def _errors(errors: dict[str, float] | None) -> str:

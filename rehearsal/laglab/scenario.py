@@ -24,8 +24,9 @@ from pydantic import (
 )
 
 from laglab.errors import ScenarioError
+from laglab.timeline_file import read_timeline
 from laglab_controller import ESTIMATORS
-from laglab_gateway import IDEAL, Event, Impairments, Safety
+from laglab_gateway import IDEAL, Event, Impairments, Safety, TimelineError, read_link_log
 
 SHIPPED = resources.files("laglab") / "scenarios"
 
@@ -45,7 +46,8 @@ Pose = Annotated[
 ]
 """x [m], y [m], theta [rad]; on the command line ``X,Y,THETA``."""
 Positive = Annotated[FiniteFloat, Field(gt=0)]
-Variance = Annotated[FiniteFloat, Field(ge=0)]
+Share = Annotated[FiniteFloat, Field(gt=-1, lt=1)]
+NotNegative = Annotated[FiniteFloat, Field(ge=0)]
 
 
 class LinkScenario(BaseModel):
@@ -58,6 +60,16 @@ class LinkScenario(BaseModel):
     event: tuple[Event, ...] = ()
     replay: str | None = None
     """The `link.csv` of an earlier run, whose frames' fates are to come true again."""
+
+    @field_validator("replay")
+    @classmethod
+    def _readable(cls, replay: str | None) -> str | None:
+        if replay is not None:
+            try:
+                read_link_log(Path(replay), "command")
+            except TimelineError as error:
+                raise ValueError(str(error)) from error
+        return replay
 
 
 class Scenario(BaseModel):
@@ -77,7 +89,7 @@ class Scenario(BaseModel):
     seed: Annotated[int, Field(ge=0, lt=2**31)] = 1
     noise: bool = False
     fmi: Literal[2, 3] = 3
-    initial_covariance: Variance = 1e-4
+    initial_covariance: NotNegative = 1e-4
     initial_estimate: Annotated[
         Pose | Literal["start", "drawn"], Field(union_mode="left_to_right")
     ] = "start"
@@ -90,10 +102,17 @@ class Scenario(BaseModel):
     sample_time: Positive = 0.01
     wheel_radius: Positive = 0.05
     track: Positive = 0.6
-    wheel_noise_variance: Variance = 0.01
+    wheel_noise_variance: NotNegative = 0.01
     measurement_variance: tuple[Positive, Positive, Positive] = (0.01, 0.01, 0.018)
+    wheel_speed_max: NotNegative = 0.0
+    motor_time_constant: NotNegative = 0.0
+    wheel_radius_error: Share = 0.0
+    track_error: Share = 0.0
+    wheel_slip: Annotated[FiniteFloat, Field(ge=0, lt=1)] = 0.0
     pace: Literal["lockstep", "realtime"] = "lockstep"
     speed: Positive = 1.0
+    silence_timeout: Positive = 3.0
+    """[s] of the wall clock after which a silent side counts as gone."""
     link: LinkScenario = LinkScenario()
     safety: Safety = Safety()
 
@@ -154,20 +173,24 @@ def _shipped_names() -> list[str]:
 
 
 def load(reference: str, overrides: Mapping[str, object] | None = None) -> Scenario:
-    """A scenario by its shipped name or by a path to a TOML file; ``overrides`` beat the file.
+    """A scenario by its shipped name or by a path to a TOML file; `overrides` beat the file.
+
+    An override `timeline` is the path of a file that stands in for the link's events.
 
     Raises:
         ScenarioError: no such scenario, not TOML, or a field that cannot be.
     """
     fields, name = _read(reference)
     fields = {"name": name} | fields | dict(overrides or {})
+    if timeline := fields.pop("timeline", None):
+        fields["link"] = dict(fields.get("link", {})) | read_timeline(timeline)
     try:
         return Scenario.model_validate(fields)
     except ValidationError as error:
         raise ScenarioError(f"{reference}: {_first_problem(error)}") from None
 
 
-def _read(reference: str) -> tuple[dict[str, object], str]:
+def _read(reference: str) -> tuple[dict[str, Any], str]:
     path = SHIPPED / f"{reference}.toml"
     if "/" in reference or not path.is_file():
         path = Path(reference)
@@ -191,7 +214,7 @@ def _first_problem(error: ValidationError) -> str:
     problem = error.errors()[0]
     field = ".".join(str(part) for part in _without_branches(problem["loc"]))
     match problem["type"]:
-        case "extra_forbidden":
+        case "extra_forbidden" | "unexpected_keyword_argument":
             known = ", ".join(info.alias or key for key, info in Scenario.model_fields.items())
             return f"{field}: unknown key" + (f"; known: {known}" if "." not in field else "")
         case "value_error":

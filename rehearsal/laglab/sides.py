@@ -23,6 +23,7 @@ from laglab_gateway import (
     RandomFates,
     RecordedFates,
     Recorder,
+    Watch,
     read_link_log,
     serve_lockstep,
     serve_realtime,
@@ -40,6 +41,11 @@ def robot_parameters(scenario: Scenario) -> RobotParameters:
         start=scenario.start,
         seed=scenario.seed,
         noise=scenario.noise,
+        wheel_speed_max=scenario.wheel_speed_max,
+        motor_time_constant=scenario.motor_time_constant,
+        wheel_radius_error=scenario.wheel_radius_error,
+        track_error=scenario.track_error,
+        wheel_slip=scenario.wheel_slip,
     )
 
 
@@ -86,11 +92,14 @@ def serve(
     progress: Callable[[int], None],
 ) -> tuple[Outcome, dict[str, Any]]:
     """Run the robot's side at the scenario's pace: how it ended, and what the stamps tell."""
+    watch = Watch(gateway.services, [])
     if scenario.pace == "lockstep":
-        outcome = serve_lockstep(gateway, endpoint, recorder, patience, progress)
+        outcome = serve_lockstep(gateway, endpoint, recorder, patience, watch, progress)
         return outcome, {"link": gateway.audit.report()}
     period = scenario.sample_time / scenario.speed
-    outcome, lateness = serve_realtime(gateway, endpoint, recorder, patience, progress, period)
+    outcome, lateness = serve_realtime(
+        gateway, endpoint, recorder, patience, watch, progress, period
+    )
     return outcome, {"link": gateway.audit.report(), "timing": lateness.report()}
 
 

@@ -104,7 +104,7 @@ def test_delayed_ekf_is_roll_back_and_replay(record, m, windows):
     assert np.abs(answer.covariances - covariances).max() < 1e-12
 
 
-@pytest.mark.parametrize("name", ["popf", "popf-printed", "delayed-ekf"])
+@pytest.mark.parametrize("name", ["popf", "popf-printed", "popf-exact", "delayed-ekf"])
 def test_without_delay_it_is_the_ekf(record, name):
     ekf, other = run(Ekf(robot), record, 0), run(ESTIMATORS[name].make(robot), record, 0)
     assert np.abs(ekf.estimates - other.estimates).max() < 1e-12
@@ -121,7 +121,7 @@ def test_ekf_takes_a_late_measurement_for_a_fresh_one(record):
         assert np.abs(late[k] - x).max() < 1e-10 or k < 5
 
 
-@pytest.mark.parametrize("name", ["popf", "popf-printed", "ekf"])
+@pytest.mark.parametrize("name", ["popf", "popf-printed", "popf-exact", "ekf"])
 def test_before_the_first_measurement_it_only_predicts(record, name):
     answer = run(ESTIMATORS[name].make(robot), record, 20)
     x, P = record.poses[0], P0
@@ -131,7 +131,7 @@ def test_before_the_first_measurement_it_only_predicts(record, name):
         assert np.allclose(answer.covariances[k], P, atol=1e-16)
 
 
-@pytest.mark.parametrize("name", ["popf", "delayed-ekf"])
+@pytest.mark.parametrize("name", ["popf", "popf-exact", "delayed-ekf"])
 @pytest.mark.parametrize("m", [0, 3, 20])
 def test_without_noise_the_estimate_is_exact_at_every_tick(simulate, name, m):
     record = simulate(name, m=m, ticks=500)

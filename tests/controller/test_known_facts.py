@@ -86,3 +86,11 @@ def test_the_command_is_made_for_the_moment_it_comes_into_force(n):
     for k in range(60 - n):
         v, omega, _ = law.drive(poses[k + n], at_goal=False)
         assert sent[k + n] == pytest.approx([v, omega], abs=1e-9)
+
+
+@pytest.mark.parametrize("p0", [1e-4, 2e-3, 1e-2])
+def test_popf_exact_does_not_diverge_but_is_not_the_optimum(simulate, p0):
+    exact, optimum = (simulate(name, noise=2, p0=p0) for name in ("popf-exact", "delayed-ekf"))
+    assert np.abs(exact.estimates - exact.poses).max() < 1
+    if p0 > 1e-3:
+        assert exact.rms_error()[0] > 2 * optimum.rms_error()[0]

@@ -46,3 +46,12 @@ def test_whole_turns_are_no_innovation(x, turns):
 def test_heading_innovation_of_half_a_turn_is_plus_pi():
     assert robot.innovation(np.array([0, 0, -np.pi]), np.zeros(3))[2] == np.pi
     assert robot.innovation(np.array([0, 0, np.pi]), np.zeros(3))[2] == np.pi
+
+
+@given(poses, inputs, st.floats(0, 0.5))
+def test_predict_is_27(x, u, spread):
+    P = np.diag([1.0, 2.0, 3.0]) + spread
+    A, W = robot.A(x, u), robot.W(x)
+    prior, covariance = robot.predict(x, P, u)
+    assert np.allclose(prior, robot.f(x, u), rtol=1e-14)
+    assert np.allclose(covariance, A @ P @ A.T + W @ robot.Q @ W.T, rtol=1e-12, atol=1e-14)

@@ -23,7 +23,7 @@ def test_the_product_is_that_of_the_items_in_order(steps):
             item, window = window.pop()
             assert item == expected.popleft()
         assert window.product == "".join(expected)
-        assert [item for item, _ in window] == list(expected)
+        assert list(window) == list(expected)
 
 
 def test_an_empty_window_gives_no_item():

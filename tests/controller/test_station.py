@@ -52,6 +52,10 @@ class Robot:
     def tick(self, tick, *poses):
         return self.say(self.datagram(tick, *poses))
 
+    def drive(self, tick, measurement):
+        """One tick of a robot that echoes what it does."""
+        return self.say(b"".join(map(self._sender.frame, [measurement, Tick(tick, 1)])))
+
     def end(self, tick, reason):
         return self.say(self._sender.frame(End(tick, reason)))
 
@@ -131,13 +135,20 @@ def test_after_lost_ticks_it_goes_on_from_the_present_one():
     assert estimate[:3] == pytest.approx(x, abs=1e-15)
 
 
-def test_a_robot_that_already_counts_high_is_joined():
-    late, fresh = Robot(make(n=1)), Robot(make(n=1))
-    for k in range(4):
-        measured = (-3.0 + k / 100, -3.0, 0.5)
-        estimate, command = late.tick(k + 5000, (k + 5000, measured), (4999, (0.0, 0.0, 0.0)))
-        expected = fresh.tick(k, (k, measured))
-        assert (estimate[:9], command[:2]) == (expected[0][:9], expected[1][:2])
+def test_a_robot_that_is_under_way_is_stopped_and_taken_over_from_where_it_stands():
+    robot, n, here = Robot(make(n=3)), 3, np.array((1.0, -2.0, 3.1))
+    rng, sent = np.random.default_rng(1), []
+    for tick in range(5000, 5400):
+        v = sent[tick - 5000 - n - 1].v if tick - 5000 > n else 0.7
+        z = here + rng.normal(0, (0.1, 0.1, 0.13))
+        *estimates, command = robot.drive(tick, Measurement(*z, v, 0.0, tick, tick - 1 - n))
+        sent.append(command)
+        if estimates:
+            break
+    assert all((earlier.v, earlier.omega) == (0, 0) for earlier in sent[:-1])
+    assert len(sent) == 100 + n + 1
+    assert estimates[0][:3] == pytest.approx(here, abs=0.05)
+    assert sent[-1].v != 0
 
 
 @pytest.mark.parametrize("estimator", ["raw", "ekf", "delayed-ekf"])

@@ -1,11 +1,100 @@
-"""The FMUs under test, built once from the sources as they are."""
+"""The FMUs under test, built once from the sources as they are, and fmpy instances of them."""
 
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
+import fmpy
 import pytest
+from fmpy.fmi2 import FMU2Model, FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+from fmpy.fmi3 import FMU3Model, FMU3Slave
 
 from laglab_fmu import build_fmus
 from laglab_fmu import slave as slave_module
+from laglab_fmu.compiler import host_platform
+from laglab_fmu.description import TOKEN
+from laglab_fmu.variables import MODEL_NAME, REFERENCE, VARIABLES, Kind
+
+
+class Face:
+    """An fmpy instance; calls that differ between the versions have one name here."""
+
+    def __init__(self, name: str, kind: str, folder: Path, debug: bool) -> None:
+        self.version, self.kind = int(name[-1]), kind
+        self.messages: list[tuple[int, str, str]] = []
+        arguments = {"guid": TOKEN, "modelIdentifier": MODEL_NAME, "unzipDirectory": str(folder)}
+        if self.version == 2:
+            platform = host_platform()
+            inside = f"binaries/{platform.fmi2_folder}/{MODEL_NAME}{platform.suffix}"
+            arguments["libraryPath"] = str(folder / inside)
+        self.fmu: Any = _CLASSES[self.version, kind](**arguments)
+        if self.version == 2:
+            callbacks = fmi2CallbackFunctions()
+            callbacks.logger = fmi2CallbackLoggerTYPE(lambda _, _name, *entry: self._logged(*entry))
+            self.fmu.instantiate(callbacks=callbacks, loggingOn=debug)
+        else:
+            self.fmu.instantiate(loggingOn=debug, logMessage=lambda _, *entry: self._logged(*entry))
+
+    def _logged(self, status: int, category: bytes, text: bytes) -> None:
+        self.messages.append((status, category.decode(), text.decode()))
+
+    def set(self, **values: float) -> None:
+        """Sets variables by name."""
+        for name, value in values.items():
+            kind = next(v.kind for v in VARIABLES if v.name == name)
+            setter = getattr(self.fmu, "set" + _TYPE_NAMES[kind][self.version - 2])
+            setter([REFERENCE[name]], [value])
+
+    def get(self, *names: str) -> list[float]:
+        """Real values by name."""
+        getter = self.fmu.getReal if self.version == 2 else self.fmu.getFloat64
+        return list(getter([REFERENCE[name] for name in names]))
+
+    def start(self, time: float = 0.0, **values: float) -> None:
+        """Sets parameters and leaves initialization mode."""
+        self.set(**values)
+        if self.version == 2:
+            self.fmu.setupExperiment(startTime=time)
+            self.fmu.enterInitializationMode()
+        else:
+            self.fmu.enterInitializationMode(startTime=time)
+        self.fmu.exitInitializationMode()
+
+    def step(self, time: float, step: float = 0.01) -> None:
+        self.fmu.doStep(time, step)
+
+    def save(self) -> Any:
+        return self.fmu.getFMUstate() if self.version == 2 else self.fmu.getFMUState()
+
+    def restore(self, state: Any) -> None:
+        (self.fmu.setFMUstate if self.version == 2 else self.fmu.setFMUState)(state)
+
+    def free(self, state: Any) -> None:
+        (self.fmu.freeFMUstate if self.version == 2 else self.fmu.freeFMUState)(state)
+
+    def serialize(self, state: Any) -> bytes:
+        fmu = self.fmu
+        return bytes((fmu.serializeFMUstate if self.version == 2 else fmu.serializeFMUState)(state))
+
+    def deserialize(self, data: bytes) -> Any:
+        fmu = self.fmu
+        return (fmu.deSerializeFMUstate if self.version == 2 else fmu.deserializeFMUState)(data)
+
+
+_CLASSES = {
+    (2, "CoSimulation"): FMU2Slave,
+    (2, "ModelExchange"): FMU2Model,
+    (3, "CoSimulation"): FMU3Slave,
+    (3, "ModelExchange"): FMU3Model,
+}
+_TYPE_NAMES = {
+    Kind.FLOAT64: ("Real", "Float64"),
+    Kind.INT32: ("Integer", "Int32"),
+    Kind.ENUMERATION: ("Integer", "Int64"),
+    Kind.BOOLEAN: ("Boolean", "Boolean"),
+    Kind.UINT64: ("", "UInt64"),
+}
+MakeFace = Callable[..., Face]
 
 
 @pytest.fixture(scope="session")
@@ -14,7 +103,30 @@ def fmus(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     return {path.stem: path for path in build_fmus(tmp_path_factory.mktemp("fmus"))}
 
 
+@pytest.fixture(scope="session")
+def extracted(fmus: dict[str, Path], tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """The same, unpacked."""
+    folders = {name: tmp_path_factory.mktemp(name) for name in fmus}
+    for name, path in fmus.items():
+        fmpy.extract(path, folders[name])
+    return folders
+
+
 @pytest.fixture(autouse=True)
 def use_fresh_fmus(fmus: dict[str, Path], monkeypatch: pytest.MonkeyPatch) -> None:
     """Robots open the FMUs of this session, not what an earlier installation left."""
     monkeypatch.setattr(slave_module, "built", lambda name: fmus[Path(name).stem])
+
+
+@pytest.fixture
+def make_face(extracted: dict[str, Path]) -> Iterator[MakeFace]:
+    """`make_face("Robot3", "CoSimulation")`: an instance that lives as long as the test."""
+    made: list[Face] = []
+
+    def make(name: str, kind: str, debug: bool = False) -> Face:
+        made.append(Face(name, kind, extracted[name], debug))
+        return made[-1]
+
+    yield make
+    for face in made:
+        face.fmu.freeInstance()

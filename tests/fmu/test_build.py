@@ -8,8 +8,7 @@ import pytest
 from fmpy import read_model_description
 from fmpy.validation import validate_fmu
 
-from laglab_fmu import BuildError, CompilerNotFoundError, build_fmus
-from laglab_fmu import build as build_module
+from laglab_fmu import BuildError, CompilerNotFoundError, build_fmus, contents
 from laglab_fmu import compiler as compiler_module
 
 
@@ -66,7 +65,7 @@ def test_a_failing_compiler_is_quoted(tmp_path: Path, monkeypatch: pytest.Monkey
     source = tmp_path / "src"
     source.mkdir()
     (source / "robot.c").write_text("int broken(void) { return undeclared; }\n")
-    monkeypatch.setattr(build_module, "source_directory", lambda: source)
+    monkeypatch.setattr(contents, "own_files", lambda folder: tmp_path / folder)
     with pytest.raises(BuildError, match="undeclared"):
         build_fmus(tmp_path / "out")
     assert not (tmp_path / "out").exists()

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from laglab_fmu import Reading, Robot, RobotParameters
-from laglab_fmu.build import source_directory
 from laglab_fmu.compiler import FLAGS, host_platform, zig_compiler
+from laglab_fmu.contents import own_files
 from laglab_fmu.host import host_compiler
 
 WORD = st.integers(0, 2**64 - 1)
@@ -23,7 +23,7 @@ def noise(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     """noise.c alone, as a library."""
     platform = host_platform()
     library = tmp_path_factory.mktemp("noise") / f"noise{platform.suffix}"
-    source = source_directory() / "noise.c"
+    source = own_files("src") / "noise.c"
     compiler = host_compiler() or zig_compiler(platform)
     command = [*compiler, *FLAGS, "-fvisibility=default", "-shared", "-fPIC"]
     subprocess.run([*command, "-o", str(library), str(source), "-lm"], check=True)

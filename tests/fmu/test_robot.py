@@ -1,6 +1,7 @@
 """The robot's motion, through both versions of FMI."""
 
 import math
+import os
 import tempfile
 from itertools import pairwise
 from pathlib import Path
@@ -156,8 +157,10 @@ def test_nothing_is_left_behind(
     version: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    with Robot.open(version, QUIET):
-        assert len(list(tmp_path.iterdir())) == 1
+    with Robot.open(version, QUIET) as robot:
+        if os.name == "posix":  # so that nothing stays when the process is killed
+            assert not list(tmp_path.iterdir())
+        robot.step(1.0, 1.0)
     assert not list(tmp_path.iterdir())
     with pytest.raises(CallError):
         Robot.open(version, RobotParameters(track=0.0))
@@ -171,4 +174,4 @@ def test_nothing_is_left_behind(
 
 def test_initialize_reports_what_the_fmu_logged() -> None:
     with Robot.open(3, QUIET) as robot, pytest.raises(CallError, match="cannot be set now"):
-        initialize(robot._slave, QUIET)
+        initialize(robot._slave, [QUIET])

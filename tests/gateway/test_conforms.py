@@ -14,6 +14,7 @@ from laglab_gateway import (
     GatewayConfig,
     NoRecorder,
     Patience,
+    Watch,
     serve_lockstep,
 )
 from laglab_protocol import (
@@ -42,7 +43,8 @@ def serve(endpoint: Endpoint, key_file: Path | None) -> None:
         Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, key_file) as codec,
     ):
         gateway = Gateway(FmuPlant(robot, PARAMETERS), config, codec=codec)
-        serve_lockstep(gateway, endpoint, NoRecorder(), Patience(0.05, 3.0, 5.0), lambda _: None)
+        watch, patience = Watch(gateway.services, []), Patience(0.05, 3.0, 5.0)
+        serve_lockstep(gateway, endpoint, NoRecorder(), patience, watch, lambda _: None)
 
 
 @pytest.mark.slow

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import pytest
 
-from laglab_gateway.drive import Drive, Mode, Refusal, Safety, follow, refusal, speeds, watch
+from laglab_gateway.drive import Drive, Mode, Refusal, Safety, follow, refusal, speeds, supervise
 from laglab_protocol import Command
 
 TS = 0.01
@@ -32,15 +32,15 @@ def test_what_is_refused(bad: Command, why: Refusal | None) -> None:
 
 
 def test_it_stands_still_until_the_first_command() -> None:
-    drive = watch(Drive(), 1000, TS, SAFETY)
+    drive = supervise(Drive(), 1000, TS, SAFETY)
     assert drive.mode is Mode.WAITING
     assert speeds(drive, 1000, TS, SAFETY) == (0.0, 0.0)
 
 
 def test_without_fresh_commands_it_ramps_to_a_stop() -> None:
     drive = follow(command(8), tick=10)
-    assert watch(drive, 59, TS, SAFETY).mode is Mode.DRIVING
-    drive = watch(drive, 60, TS, SAFETY)
+    assert supervise(drive, 59, TS, SAFETY).mode is Mode.DRIVING
+    drive = supervise(drive, 60, TS, SAFETY)
     assert drive.mode is Mode.STOPPING
     ramp = [speeds(drive, tick, TS, SAFETY) for tick in range(60, 120)]
     assert ramp[0] == (1.0, -0.5)
@@ -50,7 +50,7 @@ def test_without_fresh_commands_it_ramps_to_a_stop() -> None:
 
 
 def test_only_a_fresh_command_moves_it_again() -> None:
-    drive = watch(follow(command(8), tick=10), 60, TS, SAFETY)
+    drive = supervise(follow(command(8), tick=10), 60, TS, SAFETY)
     assert refusal(drive, command(8), SAFETY) is Refusal.STALE
     drive = follow(command(55), tick=65)
     assert (drive.mode, speeds(drive, 65, TS, SAFETY)) == (Mode.DRIVING, (1.0, -0.5))

@@ -75,7 +75,7 @@ def request(number: int, *numbers: float) -> CommandLong:
 
 
 def told(gateway: Gateway) -> list[Message]:
-    return [frame.message for frame in Receiver().receive(b"".join(gateway.take_notices()))]
+    return [frame.message for frame in Receiver().receive(b"".join(gateway.take_replies()))]
 
 
 def test_requests_are_answered_on_the_loops_link(robot: Robot) -> None:

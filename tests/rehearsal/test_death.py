@@ -3,6 +3,7 @@
 import json
 import multiprocessing
 import os
+import random
 import re
 import signal
 import socket
@@ -14,12 +15,13 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from laglab.rehearse import Ending, rehearse
 from laglab.scenario import load
 from laglab_gateway import read_trace
-from laglab_protocol import EndReason
+from laglab_protocol import EndReason, read_tlog
 
 Laglab = Callable[..., subprocess.CompletedProcess[str]]
 Start = Callable[..., "subprocess.Popen[str]"]
@@ -183,6 +185,62 @@ def test_a_run_whose_side_is_killed_says_which(victim: str, transport: Any, tmp_
     assert f"the {victim} process was killed by SIGKILL" in str(ending.problem)
     assert not multiprocessing.active_children()
     assert_whole(tmp_path / "trace.csv")
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(120)
+@pytest.mark.parametrize("victims", [("gateway",), ("controller",), ("gateway", "controller")])
+def test_files_are_whole_whenever_a_side_is_killed(
+    victims: tuple[str, ...], tmp_path: Path
+) -> None:
+    """At random moments of lock-step, where thousands of ticks pass in a second."""
+    rng = random.Random(str(victims))
+    for attempt in range(3):
+        moment = rng.uniform(0.0, 0.6)
+
+        def kill(moment: float = moment) -> None:
+            time.sleep(moment)
+            for child in multiprocessing.active_children():
+                if child.name in victims and child.pid is not None:
+                    os.kill(child.pid, signal.SIGKILL)
+
+        killer = threading.Thread(target=kill)
+
+        def started(_: int, killer: threading.Thread = killer) -> None:
+            if killer.ident is None:
+                killer.start()
+
+        scenario = load("lab-radio", {"duration": 3600.0, "silence_timeout": 1.0})
+        directory = tmp_path / str(attempt)
+        ending = rehearse(scenario, "udp", directory, started)
+        killer.join()
+        assert "was killed by SIGKILL" in str(ending.problem)
+        assert_whole(directory / "trace.csv")
+        link = (directory / "link.csv").read_text()
+        assert link.endswith("\n")
+        assert len({line.count(",") for line in link.splitlines()}) == 1
+        size = (directory / "robot.tlog").stat().st_size
+        assert sum(8 + len(frame.raw) for _, frame in read_tlog(directory / "robot.tlog")) == size
+
+
+@pytest.mark.parametrize("pace", [("lockstep",), ("realtime", "--speed", "4")])
+def test_a_controller_started_again_takes_over(
+    start: Start, tmp_path: Path, pace: tuple[str, ...]
+) -> None:
+    options = ("lab", "--pace", *pace, "--silence", "20")
+    gateway = start("gateway", *options, "--endpoint", "udpin://127.0.0.1:0", "--out", "run")
+    link = ("--endpoint", f"udpout://127.0.0.1:{listening_port(gateway)}")
+    first = start("controller", *options, *link)
+    wait_for_rows(tmp_path / "run" / "trace.csv", 150)
+    first.kill()
+    second = start("controller", *options, *link)
+    assert gateway.wait(40) == 0
+    assert second.wait(10) == 0
+    trace = read_trace(tmp_path / "run" / "trace.csv")
+    assert trace["tick"][-1] == 2000
+    assert np.isnan(trace["x_est"][150:1500]).sum() >= 100  # stood still, and looked
+    assert np.hypot(trace["x"][-100:], trace["y"][-100:]).max() < 0.06
+    assert np.abs(trace["theta"][-100:]).max() < 0.05
 
 
 def test_ctrl_c_ends_cleanly_with_results_written(start: Start, tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 from laglab.errors import RunError
 from laglab.options import on_scenario
 from laglab.rehearse import Ending, Transport, rehearse
-from laglab.report import results_table, write_results
+from laglab.report import results_table, warnings, write_results
 from laglab.scenario import Scenario
 from laglab_gateway import TRACE_FILE, Trace, TraceError, read_trace
 from laglab_protocol import EndReason
@@ -48,6 +48,8 @@ def run(
     summary = write_results(scenario, transport, ending, _trace(directory, ending), directory)
     console = Console()
     console.print(results_table(summary), crop=False, no_wrap=True)
+    for warning in warnings(summary):
+        Console(stderr=True).print(f"warning: {warning}", highlight=False, soft_wrap=True)
     console.print(f"{summary['verdict']}", highlight=False, soft_wrap=True)
     console.print(f"results in {directory}", highlight=False, soft_wrap=True)
     raise typer.Exit(_exit_code(ending))

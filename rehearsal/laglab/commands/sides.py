@@ -41,7 +41,7 @@ def gateway(
                 core,
                 link,
                 recorder,
-                Patience(),
+                Patience(silence=scenario.silence_timeout),
                 lambda tick: bar.update(task, completed=tick),
             )
     console.print(f"{outcome.reason.name.lower()} at tick {outcome.tick}", highlight=False)
@@ -58,5 +58,5 @@ def controller(
     """Be the remote station of SCENARIO: stabilise the robot at the other end."""
     with open_endpoint(endpoint) as link:
         typer.echo(f"calling {link.name}", err=True)
-        end = run_station(Station(station_config(scenario)), link)
+        end = run_station(Station(station_config(scenario)), link, scenario.silence_timeout)
     raise typer.Exit(EXIT_CODES[EndReason(end.reason)])

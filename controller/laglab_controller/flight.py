@@ -1,0 +1,108 @@
+"""The commands in flight: which was sent when, and which is in force when."""
+
+from collections.abc import Sequence
+from itertools import islice
+from typing import NamedTuple
+
+import numpy as np
+
+from laglab_controller.estimator import Applied
+from laglab_controller.log import Log, append, newest_first
+from laglab_controller.model import Vector
+from laglab_controller.motion import STILL, Motion, compose
+from laglab_controller.robot import RobotModel
+from laglab_controller.sliding import SlidingProduct
+
+STAND = np.zeros(2)
+"""The input before any command is in force."""
+RECENT = 25
+"""Echoes that the estimate of n is the median of."""
+MEMORY = 1024
+"""Ticks for which sent commands are kept."""
+
+
+class Echo(NamedTuple):
+    """What a measurement tells of the command in force on [t_tick, t_{tick+1}).
+
+    `command_tick` is the tick the command was made at, None when there was none and the robot
+    stood still.
+    """
+
+    tick: int
+    u: Vector
+    command_tick: int | None
+
+
+class Flight(NamedTuple):
+    """All commands sent by now; the next tick is `tick`. Immutable."""
+
+    tick: int
+    sent: Log[Vector] | None
+    """u_{tick-1} on top."""
+    command_delay: int
+    """n as the echoes have it: their median, or what the station was told before the first."""
+    recent: tuple[int, ...]
+    """The last delays that were echoed."""
+    known: int
+    """Up to this tick it may be known what was in force; after it, it is believed."""
+    in_flight: SlidingProduct[Vector, Motion]
+    """u_{tick-n} ... u_{tick-1}: standing still for what was sent before tick 0."""
+
+
+def take_off(robot: RobotModel, command_delay: int) -> Flight:
+    """Before the first command."""
+    return _rebuilt(robot, Flight(0, None, command_delay, (), -1, SlidingProduct(compose, STILL)))
+
+
+def send(robot: RobotModel, flight: Flight, u: Vector) -> tuple[Flight, Vector]:
+    """With the command of this tick on its way; and the one that is in force until the next."""
+    tick, sent, n, recent, known, in_flight = flight
+    sent = append(sent, u, MEMORY)
+    applied, in_flight = in_flight.push(u, robot.motion(u)).pop()
+    return Flight(tick + 1, sent, n, recent, known, in_flight), applied
+
+
+def hear(robot: RobotModel, flight: Flight, echoes: Sequence[Echo]) -> tuple[Flight, list[Applied]]:
+    """With n as the echoes tell; and the inputs that were in force, as far as they are now known.
+
+    When n has changed, what is still on its way is believed to take the new n ticks.
+    """
+    if not echoes:
+        return flight, []
+    inputs = [Applied(echo.tick, echo.u) for echo in echoes]
+    known = max(flight.known, *(echo.tick for echo in echoes))
+    seen = [delay for echo in echoes if (delay := _delay(echo)) is not None]
+    recent = (*flight.recent, *seen)[-RECENT:]
+    n = sorted(recent)[len(recent) // 2] if recent else flight.command_delay
+    flight = flight._replace(recent=recent, known=known)
+    if n == flight.command_delay:
+        return flight, inputs
+    flight = _rebuilt(robot, flight._replace(command_delay=n))
+    return flight, inputs + _believed(flight, since=known + 1)
+
+
+def _delay(echo: Echo) -> int | None:
+    """How late the command was, where that makes sense."""
+    if echo.command_tick is None or not 0 <= echo.tick - echo.command_tick < MEMORY:
+        return None
+    return echo.tick - echo.command_tick
+
+
+def _rebuilt(robot: RobotModel, flight: Flight) -> Flight:
+    in_flight = flight.in_flight.emptied()
+    for u in _sent_since(flight, flight.tick - flight.command_delay):
+        in_flight = in_flight.push(u, robot.motion(u))
+    return flight._replace(in_flight=in_flight)
+
+
+def _believed(flight: Flight, since: int) -> list[Applied]:
+    """What was in force from tick `since` to the present, if each command took n ticks."""
+    u = _sent_since(flight, since - flight.command_delay)
+    return [Applied(tick, u[tick - since]) for tick in range(since, flight.tick)]
+
+
+def _sent_since(flight: Flight, tick: int) -> list[Vector]:
+    """u_tick and all after it; standing still for what was sent before tick 0."""
+    count = flight.tick - tick
+    sent = list(islice(newest_first(flight.sent), count))
+    return [STAND] * (count - len(sent)) + sent[::-1]

@@ -1,0 +1,173 @@
+"""What lies in an FMU: descriptions, binaries, sources, documentation, icon, terminals, results."""
+
+import html
+from collections.abc import Mapping
+from importlib.metadata import distribution
+from pathlib import Path
+from string import Template
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement
+
+import fmpy
+
+from laglab_fmu.compiler import Platform
+from laglab_fmu.description import (
+    TOKEN,
+    model_description_2,
+    model_description_3,
+    xml_text,
+)
+from laglab_fmu.errors import BuildError
+from laglab_fmu.header import variables_header
+from laglab_fmu.units import TYPES
+from laglab_fmu.variables import MODEL_NAME, VARIABLES, Role, Variable
+
+HEADERS = {
+    2: ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"),
+    3: ("fmi3Functions.h", "fmi3FunctionTypes.h", "fmi3PlatformTypes.h"),
+}
+TERMINALS = (
+    ("wheels", "Commands to the wheel drives", Role.INPUT),
+    ("pose", "Where the robot is", Role.STATE),
+    ("sensor", "What the sensor says of the pose", Role.SAMPLED),
+    ("body", "Speeds of the body", Role.ALGEBRAIC),
+)
+REFERENCE_LAYER = "org.fmi-standard.fmi-ls-ref"
+_LAYER_NAMESPACE = "http://fmi-standard.org/fmi-ls-manifest"
+
+
+def own_files(folder: str) -> Path:
+    """A folder of this component: inside an installed package, or beside it in the repository.
+
+    Raises:
+        BuildError: in neither place.
+    """
+    package = Path(__file__).parent
+    for place in (package / folder, package.parent / folder):
+        if place.is_dir():
+            return place
+    raise BuildError(f"there is no {folder} in {package} or beside it; install laglab again")
+
+
+def fmi_headers() -> Path:
+    """The folder of the FMI 2.0 and 3.0 headers, which the installed fmpy carries."""
+    return Path(fmpy.__file__).parent / "c-code"
+
+
+def c_files() -> dict[str, bytes]:
+    """The C sources of both versions by name, the generated header included."""
+    files = {path.name: path.read_bytes() for path in sorted(own_files("src").glob("*.[ch]"))}
+    return files | {"variables.h": variables_header(TOKEN).encode()}
+
+
+def fmu_contents(name: str, binaries: Mapping[Platform, bytes]) -> dict[str, bytes]:
+    """All files of Robot2, Robot3 or Fleet3 by their path in the archive."""
+    version, fleet = int(name[-1]), not name.startswith(MODEL_NAME)
+    sources = _sources(version)
+    names = sorted(source for source in sources if source.endswith(".c"))
+    files = {f"sources/{source}": text for source, text in sources.items()}
+    if version == 2:
+        files["modelDescription.xml"] = model_description_2(names)
+    else:
+        files["modelDescription.xml"] = model_description_3(fleet)
+        files["sources/buildDescription.xml"] = _build_description(names)
+    for platform, library in binaries.items():
+        folder = platform.fmi2_folder if version == 2 else platform.fmi3_folder
+        files[f"binaries/{folder}/{MODEL_NAME}{platform.suffix}"] = library
+    return files | _documentation() | _icons(version) | ({} if fleet else _reference_results())
+
+
+def _sources(version: int) -> dict[str, bytes]:
+    """The sources of one version, with the headers that they include."""
+    other = f"fmi{5 - version}"
+    ours = {name: text for name, text in c_files().items() if not name.startswith(other)}
+    return ours | {name: (fmi_headers() / name).read_bytes() for name in HEADERS[version]}
+
+
+def _build_description(sources: list[str]) -> bytes:
+    root = Element("fmiBuildDescription", fmiVersion="3.0")
+    build = SubElement(root, "BuildConfiguration", modelIdentifier=MODEL_NAME)
+    files = SubElement(build, "SourceFileSet", language="C99")
+    for source in sources:
+        SubElement(files, "SourceFile", name=source)
+    SubElement(
+        build, "Library", name="m", external="true", description="The C library's mathematics"
+    )
+    return xml_text(root)
+
+
+def _documentation() -> dict[str, bytes]:
+    page = Template((own_files("content") / "index.html").read_text(encoding="utf-8"))
+    rows = "\n".join(_row(variable) for variable in VARIABLES if variable.role is not Role.TIME)
+    return {
+        "documentation/index.html": page.substitute(rows=rows).encode(),
+        "documentation/licenses/license.txt": (own_files("content") / "license.txt").read_bytes(),
+        "documentation/licenses/fmi-headers.txt": _header_licence(),
+    }
+
+
+def _row(variable: Variable) -> str:
+    unit = next((t.unit for t in TYPES if t.name == variable.declared_type), "")
+    start = repr(variable.start) if variable.role is Role.PARAMETER else ""
+    cells = (variable.name, unit, variable.role.value, start, variable.description)
+    return "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in cells) + "</tr>"
+
+
+def _header_licence() -> bytes:
+    files = distribution("fmpy").files or []
+    texts = [file for file in files if file.name.startswith("LICENSE")]
+    if not texts:
+        raise BuildError("the installed fmpy has no licence file to put beside its FMI headers")
+    return Path(str(texts[0].locate())).read_bytes()
+
+
+def _icons(version: int) -> dict[str, bytes]:
+    content = own_files("content")
+    icon = (content / "icon.png").read_bytes()
+    if version == 2:
+        return {"model.png": icon}
+    return {
+        "terminalsAndIcons/icon.png": icon,
+        "terminalsAndIcons/icon.svg": (content / "icon.svg").read_bytes(),
+        "terminalsAndIcons/terminalsAndIcons.xml": _terminals(),
+    }
+
+
+def _terminals() -> bytes:
+    root = Element("fmiTerminalsAndIcons", fmiVersion="3.0")
+    box = {"x1": "-100", "y1": "-100", "x2": "100", "y2": "100"}
+    graphics = SubElement(root, "GraphicalRepresentation")
+    SubElement(graphics, "CoordinateSystem", box | {"suggestedScalingFactorTo_mm": "0.1"})
+    SubElement(graphics, "Icon", box)
+    terminals = SubElement(root, "Terminals")
+    for name, description, role in TERMINALS:
+        attributes = {"name": name, "matchingRule": "plug", "description": description}
+        terminal = SubElement(terminals, "Terminal", attributes)
+        for variable in VARIABLES:
+            if variable.role is role:
+                attributes = {"variableName": variable.name, "memberName": variable.name}
+                SubElement(terminal, "TerminalMemberVariable", attributes, variableKind="signal")
+    return xml_text(root)
+
+
+def _reference_results() -> dict[str, bytes]:
+    """Inputs of the default experiment and what the model answers."""
+    ElementTree.register_namespace("fmi-ls", _LAYER_NAMESPACE)
+    layer = {
+        "fmi-ls-name": REFERENCE_LAYER,
+        "fmi-ls-version": "1.0.0-alpha.1",
+        "fmi-ls-description": "Reference results of the default experiment",
+    }
+    root = Element(
+        "fmiReferences", {f"{{{_LAYER_NAMESPACE}}}{key}": value for key, value in layer.items()}
+    )
+    files = {}
+    for end, role, description in (
+        ("in", "input", "Wheel speeds of the default experiment"),
+        ("out", "result", "Output of the default experiment in co-simulation"),
+    ):
+        name = f"{MODEL_NAME}_{end}.csv"
+        attributes = {"type": "text/csv", "source": name, "role": role}
+        SubElement(root, "Related", attributes, description=description)
+        files[f"extra/{REFERENCE_LAYER}/{name}"] = (own_files("content") / name).read_bytes()
+    return files | {f"extra/{REFERENCE_LAYER}/fmi-ls-manifest.xml": xml_text(root)}

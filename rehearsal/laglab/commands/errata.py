@@ -1,0 +1,29 @@
+"""``laglab errata``."""
+
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from laglab.commands.run import progress_bar
+from laglab.errata import VARIANTS, costs, costs_table
+from laglab.options import on_scenario
+from laglab.scenario import Scenario
+
+TABLE_WIDTH = 104
+"""Columns: a narrower terminal shows the table wrapped, but whole."""
+
+
+@on_scenario
+def errata(
+    scenario: Scenario,
+    seeds: Annotated[int, typer.Option(min=1, help="Runs with noise, for each version.")] = 5,
+) -> None:
+    """Run the paper's filter as printed beside the filter as corrected, one misprint at a time."""
+    rows = []
+    with progress_bar() as bar:
+        for cost in bar.track(costs(scenario, seeds), total=len(VARIANTS), description="errata"):
+            rows.append(cost)
+    console = Console()
+    console.width = max(console.width, TABLE_WIDTH)
+    console.print(costs_table(scenario, rows), crop=False, markup=False)

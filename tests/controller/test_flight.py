@@ -1,0 +1,135 @@
+"""The station learns from the echoes which command was in force, and how long commands take."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from laglab_controller import (
+    Controller,
+    Echo,
+    Law,
+    Measured,
+    RobotModel,
+    Station,
+    StationConfig,
+)
+from laglab_protocol import NO_COMMAND, Measurement, Receiver, Sender, Tick
+
+START = (-3.0, -3.0, 0.0)
+LAW = Law()
+
+
+class Link:
+    """A robot without noise behind a link that loses, delays and repeats."""
+
+    def __init__(self, estimator, believed_n, law=LAW):
+        config = StationConfig(
+            estimator=estimator, law=law, initial_estimate=START, command_delay=believed_n
+        )
+        self.controller, self.model = Controller(config), config.model
+        self.control, self.k = self.controller.start(), 0
+        self.poses, self.in_force = [np.array(START)], []
+        self._coming = {}
+        self._force = (np.zeros(2), None)
+        self.arriving = {}
+
+    def tick(self, command_delay, measurement_delays):
+        """One tick; a delay of None is a loss, and `measurement_delays` lists every copy's."""
+        k, pose = self.k, self.poses[-1]
+        echo = [Echo(k - 1, *self.in_force[-1])] if k else []
+        for delay in measurement_delays:
+            self.arriving.setdefault(k + delay, []).append((Measured(k, pose), echo))
+        arrived = self.arriving.pop(k, [])
+        if k:
+            self.control = self.controller.advance(self.control)
+        self.control = self.controller.answer(
+            self.control,
+            [measured for measured, _ in arrived],
+            [echo for _, echoes in arrived for echo in echoes],
+        )
+        if command_delay is not None:
+            u = np.array(self.control.drive[:2])
+            self._coming.setdefault(k + command_delay, []).append((u, k))
+        for command in self._coming.pop(k, []):
+            if self._force[1] is None or command[1] > self._force[1]:
+                self._force = command
+        self.in_force.append(self._force)
+        self.poses.append(self.model.f(pose, self._force[0]))
+        self.k += 1
+
+    @property
+    def error(self):
+        return np.abs(self.control.estimate.x - self.poses[self.k - 1]).max()
+
+    @property
+    def n(self):
+        return self.control.flight.command_delay
+
+
+@pytest.mark.parametrize("estimator", ["popf", "popf-exact", "delayed-ekf"])
+@pytest.mark.parametrize("believed_n", [0, 7, 30])
+def test_a_wrong_n_is_found_out_and_what_it_spoilt_put_right(estimator, believed_n):
+    link = Link(estimator, believed_n)
+    for _ in range(120):
+        link.tick(12, [5])
+    assert link.n == 12
+    assert link.error < 1e-9
+
+
+@pytest.mark.parametrize("estimator", ["popf", "popf-exact", "delayed-ekf"])
+def test_a_lost_command_is_put_right_when_the_echo_comes(estimator):
+    link = Link(estimator, 4)
+    for k in range(60):
+        link.tick(None if k == 40 else 4, [6])
+    errors = []
+    for _ in range(20):
+        link.tick(4, [6])
+        errors.append(link.error)
+    assert link.n == 4
+    assert max(errors) < 1e-9
+
+
+def test_the_loss_did_matter_meanwhile():
+    link = Link("delayed-ekf", 4)
+    errors = []
+    for k in range(60):
+        link.tick(None if k in (10, 11, 12) else 4, [6])
+        errors.append(link.error)
+    assert max(errors) > 1e-4
+    assert errors[-1] < 1e-12
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.data(), st.sampled_from(["popf", "popf-exact", "delayed-ekf"]))
+def test_jitter_losses_repeats_and_disorder_leave_nothing_wrong(data, estimator):
+    """Commands are lost, late and overtake; measurements are late, overtake and come twice. When
+    all has been echoed, the inputs are known: without noise the estimate is exact."""
+    link = Link(estimator, 3)
+    command = st.one_of(st.none(), st.integers(0, 8))
+    measurement = st.lists(st.integers(0, 12), min_size=1, max_size=2)
+    for delays in data.draw(st.lists(st.tuples(command, measurement), min_size=10, max_size=40)):
+        link.tick(*delays)
+    for _ in range(40):
+        link.tick(3, [0])
+    assert link.n == 3
+    assert link.error < 1e-9
+
+
+def test_the_station_reads_the_echoes_from_the_measurements():
+    """By wire: commands take 2 ticks, the station believes 0."""
+    station = Station(StationConfig(initial_estimate=START, law=LAW, estimator="delayed-ekf"))
+    robot, model, receiver = Sender(1, 1), RobotModel(), Receiver()
+    pose, force, sent = np.array(START), (np.zeros(2), NO_COMMAND), []
+    for k in range(40):
+        echo = Measurement(*pose, *force[0], k, force[1])
+        answer = station.receive(robot.frame(echo) + robot.frame(Tick(k, 1)), datagram=True)
+        estimate, command = (frame.message for frame in receiver.receive(answer))
+        sent.append((np.array(command[:2]), k))
+        if k >= 2:
+            force = sent[k - 2]
+        if k > 5:
+            assert np.abs(np.array(estimate[:3]) - pose).max() < 1e-12
+        pose = model.f(pose, force[0])
+    assert station.command_delay == 2
+    assert station.measurement_delay == 0

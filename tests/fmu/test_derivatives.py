@@ -1,0 +1,125 @@
+"""Partial derivatives: (31) and (32), directional and adjoint, and against differences."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from fmpy.fmi1 import FMICallException
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from laglab_fmu.variables import REFERENCE
+
+Ts, r, L = 0.01, 0.05, 0.6
+STATES, WHEELS = ("x", "y", "theta"), ("omega_left", "omega_right")
+DERIVATIVES = ("der(x)", "der(y)", "der(theta)")
+FACES = [(n, k) for n in ("Robot2", "Robot3") for k in ("CoSimulation", "ModelExchange")]
+
+
+def references(names: tuple[str, ...]) -> list[int]:
+    return [REFERENCE[name] for name in names]
+
+
+def jacobian(face: Any, unknowns: tuple[str, ...], knowns: tuple[str, ...]) -> np.ndarray:
+    """Column by column, with unit directions."""
+    columns = [
+        face.fmu.getDirectionalDerivative(references(unknowns), references(knowns), list(unit))
+        for unit in np.eye(len(knowns))
+    ]
+    return np.array(columns).T
+
+
+@pytest.mark.parametrize(("name", "kind"), FACES)
+def test_they_give_the_jacobians_of_the_paper(
+    make_face: Callable[..., Any], name: str, kind: str
+) -> None:
+    theta, left, right = 0.7, 3.0, 5.0
+    face = make_face(name, kind)
+    face.start(theta_start=theta, noise=False)
+    face.set(omega_left=left, omega_right=right)
+    v = r * (left + right) / 2
+    A = np.array([[1, 0, -Ts * v * math.sin(theta)], [0, 1, Ts * v * math.cos(theta)], [0, 0, 1]])
+    W = (Ts * r / 2) * np.array(
+        [
+            [math.cos(theta), math.cos(theta)],
+            [math.sin(theta), math.sin(theta)],
+            [-2 / L, 2 / L],
+        ]
+    )
+    np.testing.assert_allclose(
+        np.eye(3) + Ts * jacobian(face, DERIVATIVES, STATES), A, rtol=1e-15, atol=0
+    )
+    np.testing.assert_allclose(Ts * jacobian(face, DERIVATIVES, WHEELS), W, rtol=1e-14, atol=0)
+
+
+@settings(
+    max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(
+    theta=st.floats(-7, 7),
+    left=st.floats(-20, 20),
+    right=st.floats(-20, 20),
+    limit=st.sampled_from([0.0, 10.0]),
+    lag=st.sampled_from([0.0, 0.05]),
+    slip=st.floats(0, 0.9),
+)
+def test_they_agree_with_differences(
+    make_face: Callable[..., Any],
+    theta: float,
+    left: float,
+    right: float,
+    limit: float,
+    lag: float,
+    slip: float,
+) -> None:
+    if limit and min(abs(abs(left) - limit), abs(abs(right) - limit)) < 1e-3:
+        return  # not differentiable where the limit begins
+    outputs = (*DERIVATIVES, "v", "omega")
+
+    def at(theta: float, left: float, right: float) -> tuple[Any, np.ndarray]:
+        face = make_face("Robot3", "ModelExchange")
+        face.start(
+            theta_start=theta,
+            wheel_speed_max=limit,
+            motor_time_constant=lag,
+            wheel_slip=slip,
+            wheel_radius_error=0.1,
+        )
+        face.set(omega_left=left, omega_right=right)
+        return face, np.array(face.get(*outputs))
+
+    face, _ = at(theta, left, right)
+    J = jacobian(face, outputs, ("theta", *WHEELS))
+    point, step = np.array([theta, left, right]), 1e-5
+    for column, unit in enumerate(np.eye(3)):
+        difference = at(*(point + step * unit))[1] - at(*(point - step * unit))[1]
+        np.testing.assert_allclose(J[:, column], difference / (2 * step), atol=1e-7)
+
+
+def test_the_adjoint_is_the_transpose(make_face: Callable[..., Any]) -> None:
+    face = make_face("Robot3", "CoSimulation")
+    face.start(theta_start=0.3)
+    face.set(omega_left=1.0, omega_right=4.0)
+    unknowns, knowns = (*DERIVATIVES, "v", "omega", "x", "x_meas"), (*STATES, *WHEELS)
+    J = jacobian(face, unknowns, knowns)
+    rows = [
+        face.fmu.getAdjointDerivative(
+            references(unknowns), references(knowns), list(unit), len(knowns)
+        )
+        for unit in np.eye(len(unknowns))
+    ]
+    assert (np.array(rows) == J).all()
+    assert not J[-1].any()
+
+
+def test_what_is_no_unknown_or_known_is_named(make_face: Callable[..., Any]) -> None:
+    face = make_face("Robot3", "CoSimulation")
+    face.start()
+    with pytest.raises(FMICallException):
+        jacobian(face, ("x",), ("track",))
+    with pytest.raises(FMICallException):
+        jacobian(face, ("omega_left",), ("x",))
+    assert "track) is not an input or a state" in face.messages[0][2]
+    assert "omega_left) is not an output" in face.messages[1][2]

@@ -1,0 +1,112 @@
+"""A fleet is its robots, bit for bit."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from fmpy.fmi1 import FMICallException
+
+from laglab_fmu import CallError, Fleet, Robot, RobotParameters
+from laglab_fmu.variables import REFERENCE
+
+ROBOTS = [
+    RobotParameters(seed=3 * i, start=(0.1 * i, -1.0, i), wheel_slip=0.01 * i) for i in range(7)
+]
+TICKS = 60
+
+
+def speeds(tick: int) -> np.ndarray:
+    """(robots, 2), row-major."""
+    return np.column_stack([np.cos(np.arange(7) + tick), np.arange(7.0)])
+
+
+def test_robot_i_equals_a_single_robot_bit_for_bit() -> None:
+    with Fleet.open(ROBOTS) as fleet:
+        history = [fleet.readings.copy()]
+        history += [fleet.step(speeds(tick)).copy() for tick in range(TICKS)]
+    for i, parameters in enumerate(ROBOTS):
+        with Robot.open(3, parameters) as robot:
+            assert tuple(history[0][i]) == robot.read()
+            for tick in range(TICKS):
+                assert tuple(history[tick + 1][i]) == robot.step(*speeds(tick)[i])
+
+
+def test_nothing_is_copied() -> None:
+    with Fleet.open(ROBOTS) as fleet:
+        assert fleet.readings.shape == (7, 8)
+        mine = np.asfortranarray(speeds(0))
+        given = fleet.step(mine)
+        assert given is fleet.readings
+        assert fleet.inputs.value == mine.ctypes.data
+        assert fleet.outputs.value == given.ctypes.data
+        as_columns = given.copy()
+        fleet.reset(ROBOTS)
+        assert (fleet.step(speeds(0)) == as_columns).all()
+
+
+def test_mistakes_are_named() -> None:
+    with pytest.raises(ValueError, match="0 robots"):
+        Fleet.open([])
+    with pytest.raises(ValueError, match="2 sample times"):
+        Fleet.open([RobotParameters(), RobotParameters(sample_time=0.02)])
+    with pytest.raises(CallError, match="track = 0 refused"):
+        Fleet.open([RobotParameters(), RobotParameters(track=0.0)])
+    with Fleet.open(ROBOTS) as fleet:
+        with pytest.raises(ValueError, match=r"\(3, 2\), not \(7, 2\)"):
+            fleet.step(np.zeros((3, 2)))
+        before = fleet.readings.copy()
+        with pytest.raises(CallError, match=r"tick 0: .*omega_right = nan"):
+            fleet.step(np.where(np.arange(14).reshape(7, 2) == 9, np.nan, 1.0))
+        fleet.fetch()
+        assert (fleet.readings == before).all()
+        with pytest.raises(ValueError, match="1 robots for a fleet of 7"):
+            fleet.reset(ROBOTS[:1])
+
+
+def test_the_size_is_set_in_configuration_mode_only(make_face: Callable[..., Any]) -> None:
+    face = make_face("Fleet3", "CoSimulation")
+    with pytest.raises(FMICallException):
+        face.set(robots=3)
+    assert "configuration mode" in face.messages[-1][2]
+    face.fmu.enterConfigurationMode()
+    with pytest.raises(FMICallException):
+        face.set(robots=0)
+    assert "robots = 0 refused" in face.messages[-1][2]
+    face.set(robots=3)
+    face.fmu.exitConfigurationMode()
+    assert face.fmu.getUInt64([REFERENCE["robots"]]) == [3]
+    assert face.fmu.getInt32([REFERENCE["seed"]], 3) == [1, 2, 3]
+    with pytest.raises(FMICallException):
+        face.fmu.getFloat64([REFERENCE["x"]], 2)
+    assert "2 values given for variables that hold 3" in face.messages[-1][2]
+
+
+def test_derivatives_and_states_of_a_fleet(make_face: Callable[..., Any]) -> None:
+    face = make_face("Fleet3", "CoSimulation")
+    face.fmu.enterConfigurationMode()
+    face.set(robots=2)
+    face.fmu.exitConfigurationMode()
+    face.fmu.setFloat64([REFERENCE["theta_start"]], [0.0, np.pi / 2])
+    face.fmu.setBoolean([REFERENCE["noise"]], [False, False])
+    face.fmu.enterInitializationMode()
+    face.fmu.exitInitializationMode()
+    face.fmu.setFloat64([REFERENCE["omega_left"], REFERENCE["omega_right"]], [2.0, 4.0, 2.0, 4.0])
+    unknowns = [REFERENCE["der(x)"], REFERENCE["der(y)"]]
+    v = [0.1, 0.2]
+    given = face.fmu.getDirectionalDerivative(unknowns, [REFERENCE["theta"]], [1.0, 1.0], 4)
+    np.testing.assert_allclose(given, [0.0, -v[1], v[0], 0.0], atol=1e-16)
+    state = face.save()
+    data = face.serialize(state)
+    face.step(0.0)
+    moved = face.fmu.getFloat64([REFERENCE["x"], REFERENCE["y"]], 4)
+    face.restore(state)
+    face.free(state)
+    face.step(0.0)
+    assert face.fmu.getFloat64([REFERENCE["x"], REFERENCE["y"]], 4) == moved
+    alone = make_face("Fleet3", "CoSimulation")
+    received = alone.deserialize(data)
+    with pytest.raises(FMICallException):
+        alone.restore(received)
+    assert "of 2 robot(s)" in alone.messages[-1][2]
+    alone.free(received)

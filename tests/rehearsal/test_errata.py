@@ -1,0 +1,29 @@
+"""``laglab errata``: each misprint on its own, and all together."""
+
+from laglab.errata import VARIANTS, costs
+from laglab.scenario import load
+from laglab_controller import Erratum
+
+
+def test_what_each_misprint_costs():
+    """Without noise only the innovation of (28) shows: it alone keeps the robot from its goal."""
+    rows = dict(zip(VARIANTS, costs(load("fig8"), seeds=1), strict=True))
+    by_errata = {variant.errata: cost for variant, cost in rows.items()}
+    corrected = by_errata[frozenset()]
+    assert corrected.converged
+    assert max(corrected.errors.values()) < 1e-12
+    for erratum in set(Erratum) - {Erratum.INNOVATION}:
+        assert by_errata[frozenset({erratum})].converged
+    innovation = by_errata[frozenset({Erratum.INNOVATION})]
+    assert not innovation.converged
+    assert innovation.errors["x"] > 0.1
+    assert innovation.noisy_errors["x"] > 10 * corrected.noisy_errors["x"]
+    assert not by_errata[frozenset(Erratum)].converged
+
+
+def test_the_command_prints_a_line_for_each(laglab):
+    ended = laglab("errata", "fig6", "--duration", "1", "--seeds", "1")
+    assert ended.returncode == 0, ended.stderr
+    for erratum in Erratum:
+        assert f"({erratum.equation}) {erratum.printed}" in ended.stdout
+    assert "as corrected" in ended.stdout
