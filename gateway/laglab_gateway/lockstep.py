@@ -3,8 +3,9 @@
 from collections.abc import Callable
 
 from laglab_gateway.conversation import Conversation, Link, Patience
-from laglab_gateway.core import Gateway, Outcome
+from laglab_gateway.core import Gateway
 from laglab_gateway.recorder import Recorder
+from laglab_gateway.side import Outcome
 from laglab_gateway.watch import Watch
 from laglab_protocol import EndReason
 
@@ -14,8 +15,8 @@ def serve_lockstep(
     endpoint: Link,
     recorder: Recorder,
     patience: Patience,
-    watch: Watch,
     progress: Callable[[int], None],
+    watch: Watch | None = None,
 ) -> Outcome:
     """Run a gateway to its last tick; `progress` is told of each tick that is over.
 
@@ -27,7 +28,7 @@ def serve_lockstep(
         StationSilentError: the station never came, or fell silent.
         EndpointError: the link itself broke.
     """
-    conversation = Conversation(gateway, endpoint, recorder, patience, watch)
+    conversation = Conversation(gateway, endpoint, recorder, patience, watch=watch)
     try:
         conversation.wait_for_station()
         while gateway.outcome is None:
@@ -42,7 +43,7 @@ def serve_lockstep(
 
 def _exchange(gateway: Gateway, conversation: Conversation) -> None:
     """Send this tick until it is answered; the station answers a repeat with the same."""
-    conversation.send(gateway.open_tick())
+    conversation.send_tick()
     while not conversation.listen_for(lambda: gateway.answered):
         conversation.check_silence()
         conversation.send(gateway.repeat_tick())

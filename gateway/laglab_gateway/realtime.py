@@ -11,10 +11,14 @@ from typing import Any
 import numpy as np
 
 from laglab_gateway.conversation import Conversation, Link, Patience
-from laglab_gateway.core import Gateway, Outcome
+from laglab_gateway.core import Gateway
 from laglab_gateway.recorder import Recorder, TimingRow
+from laglab_gateway.side import Outcome
 from laglab_gateway.watch import Watch
 from laglab_protocol import EndReason
+
+TIMESYNC_TICKS = 10
+"""How often the station's clock is asked for."""
 
 LONGEST_WAIT = 0.04
 """[s] Longer waits are left to a kernel timer that is too coarse for a deadline."""
@@ -52,18 +56,19 @@ def serve_realtime(
     endpoint: Link,
     recorder: Recorder,
     patience: Patience,
-    watch: Watch,
     progress: Callable[[int], None],
     period: float,
     now: Callable[[], float] = monotonic,
+    watch: Watch | None = None,
 ) -> tuple[Outcome, Lateness]:
     """Run a gateway to its last tick, one tick every `period` [s] of the clock `now`.
+    Those who `watch` are looked after meanwhile.
 
     Raises:
         StationSilentError: the station never came, or fell silent for longer than allowed.
         EndpointError: the link itself broke.
     """
-    conversation = Conversation(gateway, endpoint, recorder, patience, watch, now)
+    conversation = Conversation(gateway, endpoint, recorder, patience, now, watch)
     lateness = Lateness(period)
     try:
         conversation.wait_for_station()
@@ -73,8 +78,10 @@ def serve_realtime(
             late = now() - deadline
             if lateness.add(late):
                 gateway.announce(f"cannot keep up: tick {gateway.tick} is {late:.3f} s late")
-            conversation.send(gateway.open_tick())
+            conversation.send_tick()
             gateway.settle()
+            if gateway.tick % TIMESYNC_TICKS == 0:
+                conversation.send(gateway.ask_time())
             answer = _listen_until(deadline + period, gateway, conversation)
             recorder.timing(TimingRow(gateway.tick, late, answer))
             progress(conversation.finish_tick())

@@ -1,5 +1,6 @@
 """The two sides of a rehearsal, each made from the scenario alone."""
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -23,10 +24,12 @@ from laglab_gateway import (
     RandomFates,
     RecordedFates,
     Recorder,
-    Watch,
+    Services,
+    Timesyncing,
     read_link_log,
     serve_lockstep,
     serve_realtime,
+    standard_parameters,
 )
 
 
@@ -62,7 +65,12 @@ def open_gateway(scenario: Scenario) -> Iterator[Gateway]:
             sample_time=scenario.sample_time,
             safety=scenario.safety,
         )
-        yield Gateway(plant, config, link_fates(scenario))
+        free_running = Timesyncing(time.monotonic_ns) if scenario.pace == "realtime" else None
+        parameters_shown = standard_parameters(
+            scenario.command_delay, scenario.measurement_delay, scenario.safety
+        )
+        services = Services(parameters_shown, timesync=free_running)
+        yield Gateway(plant, config, link_fates(scenario), services=services)
 
 
 DIRECTIONS: tuple[Direction, ...] = ("command", "measurement")
@@ -92,15 +100,28 @@ def serve(
     progress: Callable[[int], None],
 ) -> tuple[Outcome, dict[str, Any]]:
     """Run the robot's side at the scenario's pace: how it ended, and what the stamps tell."""
-    watch = Watch(gateway.services, [])
     if scenario.pace == "lockstep":
-        outcome = serve_lockstep(gateway, endpoint, recorder, patience, watch, progress)
+        outcome = serve_lockstep(gateway, endpoint, recorder, patience, progress)
         return outcome, {"link": gateway.audit.report()}
     period = scenario.sample_time / scenario.speed
-    outcome, lateness = serve_realtime(
-        gateway, endpoint, recorder, patience, watch, progress, period
-    )
-    return outcome, {"link": gateway.audit.report(), "timing": lateness.report()}
+    outcome, lateness = serve_realtime(gateway, endpoint, recorder, patience, progress, period)
+    link = gateway.audit.report() | {"timesync": clock_audit(gateway)}
+    return outcome, {"link": link, "timing": lateness.report()}
+
+
+def clock_audit(gateway: Gateway) -> dict[str, float] | None:
+    """What TIMESYNC found: the station's clock less ours, and the way there and back [s]."""
+    timesync = gateway.services.timesync
+    if timesync is None or not timesync.samples:
+        return None
+    offsets, round_trips = np.array(timesync.samples).T * 1e-9
+    p50, p99 = np.percentile(round_trips, (50, 99))
+    return {
+        "offset_s": float(np.median(offsets)),
+        "round_trip_p50_s": float(p50),
+        "round_trip_p99_s": float(p99),
+        "samples": len(offsets),
+    }
 
 
 def robot_model(scenario: Scenario) -> RobotModel:
