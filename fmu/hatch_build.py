@@ -13,7 +13,7 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 HERE = Path(__file__).parent
-FMPY, ZIGLANG = "fmpy>=0.3.27", "ziglang>=0.13"
+FMPY, ZIGLANG = "fmpy>=0.3.30", "ziglang>=0.13"
 
 
 class FmuBuildHook(BuildHookInterface[Any]):
