@@ -20,8 +20,12 @@ class Patience:
 
     repeat_after: float = 0.1
     silence: float = 3.0
-    robot_silence: float = 1.0
     connect: float | None = None
+
+    @property
+    def robot_silence(self) -> float:
+        """Of a real robot: shorter, so that the station hears of it before it gives us up."""
+        return self.silence / 3
 
 
 class Link(Protocol):

@@ -8,7 +8,7 @@ from laglab.commands import compare, errata, fmu, run, scenarios, sides
 from laglab.errors import LaglabError, RunError, ScenarioError
 from laglab.processes import SIDE_ERRORS
 from laglab_controller import StationError
-from laglab_gateway import StationSilentError
+from laglab_gateway import RobotSilentError, StationSilentError
 from laglab_protocol import FarEndGoneError, FarEndStalledError
 
 app = typer.Typer(
@@ -26,7 +26,13 @@ app.command("gateway")(sides.gateway)
 app.command("controller")(sides.controller)
 app.add_typer(fmu.app, name="fmu")
 
-LINK_LOST = (StationError, StationSilentError, FarEndGoneError, FarEndStalledError)
+LINK_LOST = (
+    StationError,
+    StationSilentError,
+    RobotSilentError,
+    FarEndGoneError,
+    FarEndStalledError,
+)
 """What ends a run that had begun; the other errors of a side are the user's to mend."""
 
 

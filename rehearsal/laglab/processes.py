@@ -12,7 +12,7 @@ from time import monotonic
 from typing import Any
 
 from laglab.scenario import Scenario
-from laglab.sides import open_gateway, serve, station_config
+from laglab.sides import open_robot, station_config
 from laglab_controller import Station, StationError, run_station
 from laglab_fmu import FmuError
 from laglab_gateway import FileRecorder, GatewayError, Outcome, Patience
@@ -78,19 +78,21 @@ class LoopClock:
         return self._last - self._first
 
 
-def gateway_process(scenario: Scenario, url: str, directory: Path, reports: Connection) -> None:
+def gateway_process(
+    scenario: Scenario, plant: str | None, url: str, directory: Path, reports: Connection
+) -> None:
     """The robot's side, from opening the endpoint to the last report; SIGTERM ends it in order."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     clock = LoopClock(lambda tick: reports.send(Progress(tick, clock.seconds)))
     try:
         with (
-            open_gateway(scenario) as gateway,
+            open_robot(scenario, plant) as serve,
             closing(FileRecorder(directory)) as recorder,
             open_endpoint(url) as endpoint,
         ):
             reports.send(Listening(endpoint.name))
             patience = Patience(silence=scenario.silence_timeout, connect=30.0)
-            outcome, statistics = serve(scenario, gateway, endpoint, recorder, patience, clock)
+            outcome, statistics = serve(endpoint, recorder, patience, clock)
         reports.send(Finished(outcome, clock.seconds, statistics))
     except SIDE_ERRORS as error:
         reports.send(Failed(str(error)))

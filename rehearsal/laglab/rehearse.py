@@ -8,6 +8,7 @@ from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any, Literal
 
+from laglab.errors import ScenarioError
 from laglab.inline import InlineEndpoint
 from laglab.processes import (
     SIDE_ERRORS,
@@ -45,15 +46,29 @@ class Ending:
 
 
 def rehearse(
-    scenario: Scenario, transport: Transport, directory: Path, progress: Callable[[int], None]
+    scenario: Scenario,
+    transport: Transport,
+    directory: Path,
+    progress: Callable[[int], None],
+    plant: str | None = None,
 ) -> Ending:
-    """Run both sides to the end; trace, log and scenario are then in ``directory``."""
+    """Run both sides to the end; trace, log and scenario are then in ``directory``.
+
+    The robot is the FMU, or the real one at the address `plant`.
+
+    Raises:
+        ScenarioError: a real robot, which has a clock of its own, and no link to the station.
+    """
     directory.mkdir(parents=True, exist_ok=True)
     (directory / SCENARIO_FILE).write_text(scenario.to_toml(), encoding="utf-8")
     if transport == "inline":
+        if plant is not None:
+            raise ScenarioError(
+                "--plant: a real robot does not wait: take --transport udp or serial"
+            )
         return _inline(scenario, directory, progress)
     with _gateway_url(transport) as url:
-        return _two_processes(scenario, url, directory, progress)
+        return _two_processes(scenario, plant, url, directory, progress)
 
 
 def _inline(scenario: Scenario, directory: Path, progress: Callable[[int], None]) -> Ending:
@@ -83,10 +98,14 @@ def far_end(address: str) -> str:
 
 
 def _two_processes(
-    scenario: Scenario, url: str, directory: Path, progress: Callable[[int], None]
+    scenario: Scenario,
+    plant: str | None,
+    url: str,
+    directory: Path,
+    progress: Callable[[int], None],
 ) -> Ending:
     notice = scenario.silence_timeout + NOTICE_SECONDS
-    with started("gateway", gateway_process, scenario, url, directory) as gateway:
+    with started("gateway", gateway_process, scenario, plant, url, directory) as gateway:
         match gateway.next_report():
             case Listening(address):
                 station_url = far_end(address)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -23,11 +24,14 @@ from laglab_gateway import (
     RandomFates,
     RecordedFates,
     Recorder,
+    Relay,
     Watch,
     read_link_log,
     serve_lockstep,
     serve_realtime,
+    serve_remote,
 )
+from laglab_protocol import Endpoint, open_endpoint
 
 
 def robot_parameters(scenario: Scenario) -> RobotParameters:
@@ -49,20 +53,24 @@ def robot_parameters(scenario: Scenario) -> RobotParameters:
     )
 
 
+def gateway_config(scenario: Scenario) -> GatewayConfig:
+    """What the link and the robot's side do."""
+    return GatewayConfig(
+        command_delay=scenario.command_delay,
+        measurement_delay=scenario.measurement_delay,
+        last_tick=scenario.last_tick,
+        sample_time=scenario.sample_time,
+        safety=scenario.safety,
+    )
+
+
 @contextmanager
 def open_gateway(scenario: Scenario) -> Iterator[Gateway]:
     """The robot's side, its FMU loaded until the context ends."""
     parameters = robot_parameters(scenario)
     with Robot.open(scenario.fmi, parameters) as robot:
         plant = FmuPlant(robot, parameters)
-        config = GatewayConfig(
-            command_delay=scenario.command_delay,
-            measurement_delay=scenario.measurement_delay,
-            last_tick=scenario.last_tick,
-            sample_time=scenario.sample_time,
-            safety=scenario.safety,
-        )
-        yield Gateway(plant, config, link_fates(scenario))
+        yield Gateway(plant, gateway_config(scenario), link_fates(scenario))
 
 
 DIRECTIONS: tuple[Direction, ...] = ("command", "measurement")
@@ -101,6 +109,38 @@ def serve(
         gateway, endpoint, recorder, patience, watch, progress, period
     )
     return outcome, {"link": gateway.audit.report(), "timing": lateness.report()}
+
+
+def serve_real(
+    scenario: Scenario,
+    robot: Endpoint,
+    endpoint: Endpoint,
+    recorder: Recorder,
+    patience: Patience,
+    progress: Callable[[int], None],
+) -> tuple[Outcome, dict[str, Any]]:
+    """Be the link in front of a real robot, at its own pace; as `serve`."""
+    relay = Relay(gateway_config(scenario), link_fates(scenario))
+    watch = Watch(relay.services, [])
+    outcome = serve_remote(relay, robot, endpoint, recorder, patience, watch, progress)
+    return outcome, {"link": relay.audit.report()}
+
+
+Serve = Callable[
+    [Endpoint, Recorder, Patience, Callable[[int], None]], tuple[Outcome, dict[str, Any]]
+]
+"""`serve` or `serve_real`, given all but what is on the station's side."""
+
+
+@contextmanager
+def open_robot(scenario: Scenario, plant: str | None) -> Iterator[Serve]:
+    """The robot's side: the FMU, or the real robot at the address `plant`."""
+    if plant is None:
+        with open_gateway(scenario) as gateway:
+            yield partial(serve, scenario, gateway)
+    else:
+        with open_endpoint(plant) as robot:
+            yield partial(serve_real, scenario, robot)
 
 
 def robot_model(scenario: Scenario) -> RobotModel:

@@ -27,6 +27,14 @@ OutOption = Annotated[
     typer.Option("--out", metavar="DIR", help="Where the results go; runs/SCENARIO otherwise."),
 ]
 
+PlantOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="URL",
+        help="The real robot's link, such as serial:///dev/ttyX:BAUD: its clock sets the pace.",
+    ),
+]
+
 
 @on_scenario
 def run(
@@ -35,13 +43,14 @@ def run(
         Transport, typer.Option(help="What is between the two processes; inline is one process.")
     ] = "udp",
     out: OutOption = None,
+    plant: PlantOption = None,
 ) -> None:
     """Rehearse SCENARIO: robot and controller, the delayed link between them, and the verdict."""
     directory = out or fresh_directory(Path("runs"), scenario.name)
     with progress_bar() as bar:
         task = bar.add_task(scenario.name, total=scenario.last_tick)
         ending = rehearse(
-            scenario, transport, directory, lambda tick: bar.update(task, completed=tick)
+            scenario, transport, directory, lambda tick: bar.update(task, completed=tick), plant
         )
         if ending.outcome:
             bar.update(task, completed=ending.outcome.tick)

@@ -7,10 +7,10 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from laglab.commands.run import EXIT_CODES, progress_bar
+from laglab.commands.run import EXIT_CODES, PlantOption, progress_bar
 from laglab.options import on_scenario
 from laglab.scenario import Scenario
-from laglab.sides import open_gateway, serve, station_config
+from laglab.sides import open_robot, station_config
 from laglab_controller import Station, run_station
 from laglab_gateway import FileRecorder, NoRecorder, Patience
 from laglab_protocol import EndReason, open_endpoint
@@ -28,17 +28,16 @@ def gateway(
         Path | None,
         typer.Option("--out", metavar="DIR", help="Where trace.csv and robot.tlog go."),
     ] = None,
+    plant: PlantOption = None,
 ) -> None:
     """Be the robot's side of SCENARIO: wait for a controller, run to the end."""
     console = Console(stderr=True)
     recorder = FileRecorder(out) if out else NoRecorder()
-    with open_gateway(scenario) as core, closing(recorder), open_endpoint(endpoint) as link:
+    with open_robot(scenario, plant) as serve, closing(recorder), open_endpoint(endpoint) as link:
         console.print(f"listening on {link.name}", highlight=False, soft_wrap=True)
         with progress_bar() as bar:
             task = bar.add_task(scenario.name, total=scenario.last_tick)
             outcome, _ = serve(
-                scenario,
-                core,
                 link,
                 recorder,
                 Patience(silence=scenario.silence_timeout),
