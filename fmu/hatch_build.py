@@ -1,5 +1,9 @@
-"""Builds the FMUs when the package is installed, in editable and in ordinary wheels."""
+"""Builds the FMUs when the package is installed, in editable and in ordinary wheels.
 
+With LAGLAB_ALL_PLATFORMS=1 the wheel holds binaries for every platform: the one to release.
+"""
+
+import os
 import runpy
 import sys
 import sysconfig
@@ -9,18 +13,20 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 HERE = Path(__file__).parent
+FMPY, ZIGLANG = "fmpy>=0.3.27", "ziglang>=0.13"
 
 
 class FmuBuildHook(BuildHookInterface[Any]):
     """Hatchling's hook: a wheel with FMUs holds native code, but depends on no Python ABI."""
 
     def dependencies(self) -> list[str]:
-        """fmpy brings the FMI headers; ziglang compiles where nothing else does."""
+        """fmpy brings the FMI headers; ziglang compiles for others, or where nothing else does."""
         if self.target_name != "wheel":
             return []
         # The package itself cannot be imported yet: what it needs is what is being asked for.
         host = runpy.run_path(str(HERE / "laglab_fmu" / "host.py"))
-        return ["fmpy>=0.3.22"] if host["host_compiler"]() else ["fmpy>=0.3.22", "ziglang>=0.13"]
+        enough = host["host_compiler"]() and not _for_all_platforms()
+        return [FMPY] if enough else [FMPY, ZIGLANG]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Builds into the package folder: hatchling and an editable installation find it there."""
@@ -28,11 +34,21 @@ class FmuBuildHook(BuildHookInterface[Any]):
             return
         sys.path.insert(0, str(HERE))
         from laglab_fmu.build import build_fmus
+        from laglab_fmu.compiler import PLATFORMS
 
-        build_fmus(HERE / "laglab_fmu")
-        platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
-        build_data["pure_python"] = False
-        build_data["tag"] = f"py3-none-{platform}"
+        build_fmus(HERE / "laglab_fmu", PLATFORMS if _for_all_platforms() else ())
+        build_data["pure_python"] = _for_all_platforms()
+        build_data["tag"] = f"py3-none-{_platform_tag()}"
         if version == "standard":
-            for folder in ("src", "content"):
+            for folder in ("src", "content", "bench"):
                 build_data["force_include"][str(HERE / folder)] = f"laglab_fmu/{folder}"
+
+
+def _for_all_platforms() -> bool:
+    return os.environ.get("LAGLAB_ALL_PLATFORMS") == "1"
+
+
+def _platform_tag() -> str:
+    if _for_all_platforms():
+        return "any"
+    return sysconfig.get_platform().replace("-", "_").replace(".", "_")

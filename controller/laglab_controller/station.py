@@ -23,6 +23,7 @@ from laglab_protocol import (
     Receiver,
     Sender,
     Tick,
+    Timesync,
 )
 
 MAV_TYPE_GCS, MAV_AUTOPILOT_INVALID, MAV_STATE_ACTIVE, MAVLINK_VERSION = 6, 8, 4, 3
@@ -42,9 +43,12 @@ class Station:
         self,
         config: StationConfig,
         controller: Callable[[StationConfig], Controller] = Controller,
+        clock: Callable[[], int] | None = None,
     ) -> None:
+        """`clock` [ns] is what TIMESYNC is answered by; without one it is not answered."""
         self._config = config
         self._make_controller = controller
+        self._clock = clock
         self._controller = controller(config)
         self._joining: Rest | None = None
         self._sender = Sender(STATION_SYSTEM, STATION_COMPONENT)
@@ -121,6 +125,8 @@ class Station:
                 return self._hear_tick(frame.message)
             case End() if self._robot:
                 return self._hear_end(frame.message)
+            case Timesync(tc1=0, ts1=asked) if self._clock:
+                return self._sender.frame(Timesync(self._clock(), asked))
         return b""
 
     def _hear_end(self, end: End) -> bytes:

@@ -5,6 +5,7 @@ one sample, `Fleet` many of them at once.
 """
 
 from laglab_fmu.build import build_fmus
+from laglab_fmu.compiler import PLATFORMS
 from laglab_fmu.errors import (
     BuildError,
     CallError,
@@ -18,6 +19,7 @@ from laglab_fmu.robot import Robot
 from laglab_fmu.slave import fleet_path, fmu_path
 
 __all__ = [
+    "PLATFORMS",
     "BuildError",
     "CallError",
     "CompilerNotFoundError",

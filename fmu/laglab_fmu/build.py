@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from laglab_fmu.compiler import Platform, compile_library, host_platform, zig_compiler
-from laglab_fmu.contents import c_files, fmi_headers, fmu_contents
+from laglab_fmu.contents import c_files, fmu_contents
 from laglab_fmu.host import host_compiler
 from laglab_fmu.variables import MODEL_NAME
 
@@ -45,11 +45,12 @@ def _compile(folder: Path, compilers: Mapping[Platform, Sequence[str]]) -> dict[
     """One library with both versions for each platform."""
     for name, text in c_files().items():
         (folder / name).write_bytes(text)
+    sources = sorted(path.name for path in folder.glob("*.c"))
     binaries = {}
     for platform, compiler in compilers.items():
-        library = folder / platform.fmi3_folder / f"{MODEL_NAME}{platform.suffix}"
-        compile_library(sorted(folder.glob("*.c")), [fmi_headers()], library, compiler)
-        binaries[platform] = library.read_bytes()
+        library = f"{MODEL_NAME}{platform.suffix}"
+        compile_library(folder, sources, library, compiler)
+        binaries[platform] = (folder / library).read_bytes()
     return binaries
 
 

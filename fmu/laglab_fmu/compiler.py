@@ -9,18 +9,16 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
+import fmpy
+
 from laglab_fmu.errors import BuildError, CompilerNotFoundError
 
 FLAGS = (
-    "-std=c99",
-    "-O2",
-    "-ffp-contract=off",
-    "-fvisibility=hidden",
-    "-Wall",
-    "-Wextra",
-    "-Wpedantic",
-    "-Werror",
+    *("-std=c99", "-O2", "-ffp-contract=off", "-fvisibility=hidden"),
+    *("-Wall", "-Wextra", "-Wpedantic", "-Werror"),
 )
+REPRODUCIBLE = ("-g0", "-s")
+"""No debug information: it would hold the folder's name."""
 
 
 @dataclass(frozen=True)
@@ -80,25 +78,24 @@ def zig_compiler(target: Platform) -> list[str]:
 
 
 def compile_library(
-    sources: Sequence[Path], includes: Sequence[Path], library: Path, compiler: Sequence[str]
+    folder: Path, sources: Sequence[str], library: str, compiler: Sequence[str]
 ) -> None:
-    """Compiles C sources into one shared library that carries its own need of libm.
+    """Compiles C sources in a folder into one shared library there, which asks for libm itself.
+
+    Works in that folder with relative names, so that its place does not show in the library.
 
     Raises:
         BuildError: the compiler failed; with what it said.
     """
-    command = [*compiler, *FLAGS, *_shared(library), "-o", str(library)]
-    command += [argument for folder in includes for argument in ("-isystem", str(folder))]
-    command += [*map(str, sources), "-lm"]
-    library.parent.mkdir(parents=True, exist_ok=True)
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    shared = ["-shared"] if library.endswith(".dll") else ["-shared", "-fPIC"]
+    includes = ["-isystem", str(fmi_headers())]
+    command = [*compiler, *FLAGS, *REPRODUCIBLE, *shared, *includes, "-o", library, *sources, "-lm"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
     if done.returncode:
-        raise BuildError(
-            f"compiling {library.name} failed: {shlex.join(command)}\n{done.stderr.strip()}"
-        )
+        said = done.stderr.strip()
+        raise BuildError(f"compiling {library} failed: {shlex.join(command)}\n{said}")
 
 
-def _shared(library: Path) -> list[str]:
-    if library.suffix == ".dll":
-        return ["-shared"]
-    return ["-shared", "-fPIC"]
+def fmi_headers() -> Path:
+    """The folder of the FMI 2.0 and 3.0 headers, which the installed fmpy carries."""
+    return Path(fmpy.__file__).parent / "c-code"

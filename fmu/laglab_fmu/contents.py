@@ -8,9 +8,7 @@ from string import Template
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-import fmpy
-
-from laglab_fmu.compiler import Platform
+from laglab_fmu.compiler import Platform, fmi_headers
 from laglab_fmu.description import (
     TOKEN,
     model_description_2,
@@ -47,11 +45,6 @@ def own_files(folder: str) -> Path:
         if place.is_dir():
             return place
     raise BuildError(f"there is no {folder} in {package} or beside it; install laglab again")
-
-
-def fmi_headers() -> Path:
-    """The folder of the FMI 2.0 and 3.0 headers, which the installed fmpy carries."""
-    return Path(fmpy.__file__).parent / "c-code"
 
 
 def c_files() -> dict[str, bytes]:

@@ -21,7 +21,6 @@ TOKEN = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, repr((VARIABLES, TYPES, UNITS))
 
 FLEET_NAME = "Fleet"
 DESCRIPTION = "A differential-drive robot with wheel and sensor noise"
-STATES = ("x", "y", "theta")
 DEFAULT_EXPERIMENT = {"startTime": "0", "stopTime": "10", "tolerance": "1e-6", "stepSize": "0.01"}
 LOG_CATEGORIES = (
     ("logEvents", "Initialization and sample events"),
@@ -67,14 +66,7 @@ def model_description_2(sources: Sequence[str]) -> bytes:
         for source in sources:
             SubElement(files, "File", name=source)
     _units(root)
-    definitions = SubElement(root, "TypeDefinitions")
-    for declared in TYPES:
-        simple = SubElement(
-            definitions, "SimpleType", name=declared.name, description=declared.description
-        )
-        SubElement(simple, "Real", _type_attributes(declared))
-    simple = SubElement(definitions, "SimpleType", name="Integration")
-    _items(SubElement(simple, "Enumeration"))
+    _types_2(root)
     _log_categories(root)
     SubElement(root, "DefaultExperiment", DEFAULT_EXPERIMENT)
     variables = [v for v in VARIABLES if v.role not in (Role.TIME, Role.ROBOTS)]
@@ -101,11 +93,7 @@ def model_description_3(fleet: bool = False) -> bytes:
     for face in ("CoSimulation",) if fleet else ("ModelExchange", "CoSimulation"):
         SubElement(root, face, _capabilities_3(face))
     _units(root)
-    definitions = SubElement(root, "TypeDefinitions")
-    for declared in TYPES:
-        attributes = {"name": declared.name, "description": declared.description}
-        SubElement(definitions, "Float64Type", attributes | _type_attributes(declared))
-    _items(SubElement(definitions, "EnumerationType", name="Integration"))
+    _types_3(root)
     _log_categories(root)
     SubElement(root, "DefaultExperiment", DEFAULT_EXPERIMENT)
     variables = [v for v in VARIABLES if fleet or v.role is not Role.ROBOTS]
@@ -150,6 +138,24 @@ def _units(root: Element) -> None:
         if unit.display:
             name, factor = unit.display
             SubElement(element, "DisplayUnit", name=name, factor=repr(factor))
+
+
+def _types_2(root: Element) -> None:
+    definitions = SubElement(root, "TypeDefinitions")
+    for declared in TYPES:
+        attributes = {"name": declared.name, "description": declared.description}
+        simple = SubElement(definitions, "SimpleType", attributes)
+        SubElement(simple, "Real", _type_attributes(declared))
+    simple = SubElement(definitions, "SimpleType", name="Integration")
+    _items(SubElement(simple, "Enumeration"))
+
+
+def _types_3(root: Element) -> None:
+    definitions = SubElement(root, "TypeDefinitions")
+    for declared in TYPES:
+        attributes = {"name": declared.name, "description": declared.description}
+        SubElement(definitions, "Float64Type", attributes | _type_attributes(declared))
+    _items(SubElement(definitions, "EnumerationType", name="Integration"))
 
 
 def _type_attributes(declared: DeclaredType) -> dict[str, str]:

@@ -36,7 +36,7 @@ class Fleet(Stepper):
         return cls(robots)
 
     def __init__(self, robots: Sequence[RobotParameters]) -> None:
-        super().__init__(fleet_path(), partial(Slave3, robots=len(robots)), robots)
+        super().__init__(fleet_path(), partial(Slave3, fleet=True), robots)
         self._speeds: Array = np.zeros((len(INPUTS), len(robots))).T
         self.readings: Array = np.zeros((len(OUTPUTS), len(robots))).T
         self.outputs.value = self.readings.ctypes.data

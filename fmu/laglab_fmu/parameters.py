@@ -41,8 +41,10 @@ class RobotParameters:
         """The parameters by the FMU's names, as numbers.
 
         Raises:
-            ValueError: `integration` is unknown, or a tuple has not three numbers.
+            ValueError: `integration` is unknown, `seed` out of range, or a tuple not of three.
         """
+        if not 0 <= self.seed < 2**31:
+            raise ValueError(f"seed is {self.seed}; it must be in 0 ... 2^31 - 1")
         axes = ("x", "y", "theta")
         numbers = {
             f"measurement_variance_{axis}": value

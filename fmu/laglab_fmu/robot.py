@@ -1,11 +1,16 @@
 """One robot, stepped a sample at a time."""
 
 import ctypes
+import struct
+from functools import partial
 from typing import Self
 
 from laglab_fmu.parameters import Reading, RobotParameters
 from laglab_fmu.slave import Slave2, Slave3, fmu_path
 from laglab_fmu.stepper import INPUTS, OUTPUTS, Stepper
+
+_unpack = struct.Struct(f"{len(OUTPUTS)}d").unpack
+_reading = partial(tuple.__new__, Reading)  # what Reading._make does, without its Python frame
 
 
 class Robot(Stepper):
@@ -28,9 +33,9 @@ class Robot(Stepper):
     def __init__(self, version: int, parameters: RobotParameters) -> None:
         super().__init__(fmu_path(version), Slave2 if version == 2 else Slave3, [parameters])
         self._speeds = (ctypes.c_double * len(INPUTS))()
-        self._reading = (ctypes.c_double * len(OUTPUTS))()
+        self._doubles = (ctypes.c_double * len(OUTPUTS))()
         self.inputs.value = ctypes.addressof(self._speeds)
-        self.outputs.value = ctypes.addressof(self._reading)
+        self.outputs.value = ctypes.addressof(self._doubles)
 
     def read(self) -> Reading:
         """Pose, last measurement and body speeds now, without moving.
@@ -39,7 +44,7 @@ class Robot(Stepper):
             CallError: the FMU refused.
         """
         self.fetch()
-        return Reading._make(self._reading)
+        return _reading(_unpack(self._doubles))
 
     def step(self, omega_left: float, omega_right: float) -> Reading:
         """Moves for one sample time with these wheel speeds, in rad/s, and reads.
@@ -50,7 +55,7 @@ class Robot(Stepper):
         self._speeds[0] = omega_left
         self._speeds[1] = omega_right
         self.advance()
-        return Reading._make(self._reading)
+        return _reading(_unpack(self._doubles))
 
     def reset(self, parameters: RobotParameters) -> None:
         """Starts again, with other parameters, without loading anything anew.

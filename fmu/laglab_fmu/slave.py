@@ -36,11 +36,8 @@ _SETTERS_3 = {
     "setInt64": parameter_names(Kind.ENUMERATION),
     "setBoolean": parameter_names(Kind.BOOLEAN),
 }
-DISCARD = 2
-"""Statuses from here up mean that a call did not do what it was asked."""
-
 Call = Callable[[], int]
-"""An FMI function with all its arguments; gives its status."""
+"""An FMI function with all its arguments; gives its status, 0 when it did what it was asked."""
 
 
 def fmu_path(version: int) -> Path:
@@ -135,20 +132,21 @@ class Slave2:
 class Slave3:
     """FMI 3.0: one robot or a fleet."""
 
-    def __init__(self, folder: str, robots: int | None = None) -> None:
+    def __init__(self, folder: str, fleet: bool = False) -> None:
         self.log: list[str] = []
+        self.fleet = fleet
         self.fmu = FMU3Slave(guid=TOKEN, modelIdentifier=MODEL_NAME, unzipDirectory=folder)
         with _unloading_on_failure(self.fmu):
             self.fmu.instantiate(logMessage=self._logged)
-        if robots is not None:
-            self.fmu.enterConfigurationMode()
-            self.fmu.setUInt64([REFERENCE["robots"]], [robots])
-            self.fmu.exitConfigurationMode()
 
     def _logged(self, _environment: Any, _status: int, _category: bytes, message: bytes) -> None:
         self.log.append(message.decode())
 
     def initialize(self, robots: Sequence[RobotParameters]) -> None:
+        if self.fleet:
+            self.fmu.enterConfigurationMode()
+            self.fmu.setUInt64([REFERENCE["robots"]], [len(robots)])
+            self.fmu.exitConfigurationMode()
         for setter, names in _SETTERS_3.items():
             getattr(self.fmu, setter)([REFERENCE[name] for name in names], values(robots, names))
         self.fmu.enterInitializationMode(startTime=0.0)
@@ -194,7 +192,7 @@ def _unloading_on_failure(fmu: FMU2Slave | FMU3Slave) -> Iterator[None]:
 
 
 def open_slave(path: Path, make: Callable[[str], Slave], stack: ExitStack) -> Slave:
-    """Extracts an FMU and makes an instance out of its folder; `stack` undoes both.
+    """Extracts an FMU's binary for this machine and makes an instance of it; `stack` undoes both.
 
     Raises:
         CallError: it does not start.
@@ -202,7 +200,7 @@ def open_slave(path: Path, make: Callable[[str], Slave], stack: ExitStack) -> Sl
     folder = tempfile.TemporaryDirectory(prefix="laglab-fmu-")
     stack.callback(folder.cleanup)
     try:
-        fmpy.extract(path, folder.name)
+        fmpy.extract(path, folder.name, include=_is_needed)
         slave = make(folder.name)
     except Exception as error:  # fmpy raises nothing narrower
         raise CallError(f"{path} does not start ({error}); run `laglab fmu build`") from error
@@ -211,6 +209,12 @@ def open_slave(path: Path, make: Callable[[str], Slave], stack: ExitStack) -> Sl
         # A loaded library needs its file no more, and a process that is killed cleans nothing up.
         folder.cleanup()
     return slave
+
+
+def _is_needed(name: str) -> bool:
+    platform = host_platform()
+    own = tuple(f"binaries/{folder}/" for folder in (platform.fmi2_folder, platform.fmi3_folder))
+    return name.startswith(own)
 
 
 def initialize(slave: Slave, robots: Sequence[RobotParameters]) -> None:

@@ -9,7 +9,7 @@ from typing import Self
 
 from laglab_fmu.errors import CallError
 from laglab_fmu.parameters import Reading, RobotParameters
-from laglab_fmu.slave import DISCARD, Slave, initialize, open_slave
+from laglab_fmu.slave import Slave, initialize, open_slave
 
 INPUTS = ("omega_left", "omega_right")
 OUTPUTS = Reading._fields
@@ -32,9 +32,10 @@ class Stepper:
             self._stack = stack.pop_all()
         self.inputs, self.outputs = ctypes.c_void_p(), ctypes.c_void_p()
         self._tick = 0
-        self._time, self._sample_time = ctypes.c_double(), ctypes.c_double(sample_time)
+        self._sample_time = sample_time
+        self._time, self._step_size = ctypes.c_double(), ctypes.c_double(sample_time)
         self._set = self._slave.setter(INPUTS, self.inputs, len(INPUTS) * len(robots))
-        self._step = self._slave.stepper(self._time, self._sample_time)
+        self._step = self._slave.stepper(self._time, self._step_size)
         self._get = self._slave.getter(OUTPUTS, self.outputs, len(OUTPUTS) * len(robots))
 
     def fetch(self) -> None:
@@ -43,7 +44,7 @@ class Stepper:
         Raises:
             CallError: the FMU refused.
         """
-        if self._get() >= DISCARD:
+        if self._get():
             raise self._refused()
 
     def advance(self) -> None:
@@ -52,8 +53,8 @@ class Stepper:
         Raises:
             CallError: the FMU refused; nothing moved.
         """
-        self._time.value = self._tick * self._sample_time.value
-        if self._set() >= DISCARD or self._step() >= DISCARD or self._get() >= DISCARD:
+        self._time.value = self._tick * self._sample_time
+        if self._set() or self._step() or self._get():
             raise self._refused()
         self._tick += 1
 
@@ -69,12 +70,14 @@ class Stepper:
             ValueError: the sample times differ.
             CallError: the FMU refuses a parameter; restart with better ones.
         """
-        self._tick, self._sample_time.value = 0, common_sample_time(robots)
+        self._tick, self._sample_time = 0, common_sample_time(robots)
+        self._step_size.value = self._sample_time
         self._slave.reset()
         initialize(self._slave, robots)
 
     def close(self) -> None:
         """Frees the instance and the library, removes the extracted files. Twice does no harm."""
+        self._set = self._step = self._get = _closed
         self._stack.close()
 
     def __enter__(self) -> Self:
@@ -87,6 +90,11 @@ class Stepper:
         trace: TracebackType | None,
     ) -> None:
         self.close()
+
+
+def _closed() -> int:
+    """Takes the place of the FMU's functions, which would read freed memory."""
+    raise CallError("the FMU instance has been closed; open another")
 
 
 def common_sample_time(robots: Sequence[RobotParameters]) -> float:

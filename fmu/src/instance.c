@@ -11,6 +11,9 @@
 /* Longer than anybody waits for, and short enough to count its samples. */
 static const double LONGEST_STEP = 1e9; /* samples */
 
+/* Two times closer than this part of them are the same, computed in two ways. */
+static const double TIME_TOLERANCE = 1e-9;
+
 static const struct {
     const char *name;
     unsigned bit;
@@ -167,6 +170,10 @@ Status instance_step(Instance *instance, double start, double step) {
     if (!isfinite(start) || !isfinite(step) || step <= 0.0) {
         return instance_log(instance, STATUS_ERROR, "communicationStepSize %g at time %g: the step must be above zero", step,
                             start);
+    }
+    if (fabs(start - instance->time) > TIME_TOLERANCE * (fabs(instance->time) + step)) {
+        return instance_log(instance, STATUS_ERROR, "currentCommunicationPoint %.17g: the instance is at time %.17g", start,
+                            instance->time);
     }
     for (size_t i = 0; i < instance->robots; i++) {
         if (step > LONGEST_STEP * instance->robot[i].sample_time) {

@@ -28,7 +28,13 @@ from laglab_gateway.recorder import (
 )
 from laglab_gateway.relay import Relay
 from laglab_gateway.remote import serve_remote
-from laglab_gateway.services import Parameter, Parameters, Services, standard_parameters
+from laglab_gateway.services import (
+    Parameter,
+    Parameters,
+    Services,
+    Timesyncing,
+    standard_parameters,
+)
 from laglab_gateway.side import GatewayConfig, Outcome
 from laglab_gateway.timeline import Direction, Event
 from laglab_gateway.trace import Trace, TraceRow, read_trace
@@ -69,6 +75,7 @@ __all__ = [
     "Services",
     "StationSilentError",
     "TimelineError",
+    "Timesyncing",
     "Trace",
     "TraceError",
     "TraceRow",

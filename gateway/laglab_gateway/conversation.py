@@ -10,6 +10,9 @@ from laglab_gateway.recorder import Recorder
 from laglab_gateway.side import Outcome, RobotSide, from_station
 from laglab_gateway.watch import Watch
 
+TIMESYNC_TICKS = 10
+"""How often the station's clock is asked for."""
+
 END_TRIES = 5
 """A lost END only costs the station its silence timeout, so a few tries are enough."""
 
@@ -54,15 +57,15 @@ class Conversation:
         endpoint: Link,
         recorder: Recorder,
         patience: Patience,
-        watch: Watch,
         now: Callable[[], float] = monotonic,
+        watch: Watch | None = None,
     ) -> None:
         self.now = now
         self._gateway = gateway
         self._endpoint = endpoint
         self._recorder = recorder
         self._patience = patience
-        self._watch = watch
+        self._watch = watch or Watch(gateway.services, [])
         self._heard, self._heard_tick = now(), 0
 
     def wait_for_station(self) -> None:
@@ -79,6 +82,12 @@ class Conversation:
         self._recorder.frames(self._gateway.time_us, frames)
         self._endpoint.send(b"".join(frames))
 
+    def ask_time(self) -> None:
+        """Every so many ticks: how far is the station's clock away?"""
+        due = self._gateway.tick % TIMESYNC_TICKS == 0
+        if due and (question := self._gateway.ask_time()):
+            self.send(question)
+
     def listen(self, timeout: float) -> None:
         """Take what arrives, for at most `timeout` [s]."""
         data = self._endpoint.receive(timeout)
@@ -88,13 +97,16 @@ class Conversation:
             self._endpoint.accept_peer()
             self._heard, self._heard_tick = self.now(), self._gateway.tick
         self._recorder.frames(self._gateway.time_us, [frame.raw for frame in frames])
-        self._reply()
-        if not data:
-            self._watch.poll(self._gateway.state)
+        if not self._gateway.answered:
+            self.look_around()
 
-    def _reply(self) -> None:
+    def look_around(self) -> None:
+        """Send what others than the loop asked for, and look after those who watch."""
+        if notices := self._gateway.take_notices():
+            self._watch.tell(notices)
         if replies := self._gateway.take_replies():
             self.send(replies)
+        self._watch.poll(self._gateway.state)
 
     def listen_for(self, done: Callable[[], bool]) -> bool:
         """Listen until `done`, or until it is time to repeat: then False."""
@@ -112,15 +124,12 @@ class Conversation:
             raise StationSilentError(self._heard_tick, silence)
 
     def finish_tick(self) -> int:
-        """Close the tick, record it, tell everybody of what the robot did; returns the tick."""
+        """Close the tick, record it, look after everybody else; returns the tick."""
         row = self._gateway.close_tick()
         self._recorder.row(row)
         if rows := self._gateway.take_link_rows():
             self._recorder.link(rows)
-        if notices := self._gateway.take_notices():
-            self._watch.tell(notices)
-            self._reply()
-        self._watch.poll(self._gateway.state)
+        self.look_around()
         return row.tick
 
     def say_goodbye(self, outcome: Outcome) -> None:

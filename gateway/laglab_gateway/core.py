@@ -33,7 +33,9 @@ class Gateway(RobotSide):
         n, m = config.command_delay, config.measurement_delay
         self._plant = plant
         self._speeds = (0.0, 0.0)
-        super().__init__(config, services or Services(standard_parameters(n, m)), fates, codec)
+        super().__init__(
+            config, services or Services(standard_parameters(n, m, config.safety)), fates, codec
+        )
 
     def _begin_tick(self, tick: int) -> None:
         super()._begin_tick(tick)
@@ -60,17 +62,16 @@ class Gateway(RobotSide):
 
     def settle(self) -> None:
         """Let the commands that have come across the link take force, and the failsafe watch."""
-        k, config = self.tick, self._config
+        k, Ts, safety = self.tick, self._config.sample_time, self.safety
         for command, _ in self._commands.due(k):
             self.audit.command.arrived(command.tick, k)
             self._follow(command, k)
-        supervised = supervise(self._drive, k, config.sample_time, config.safety)
+        supervised = supervise(self._drive, k, Ts, safety)
         if supervised.mode is not self._drive.mode:
             self.audit.stops.append(k)
-            self.announce(f"no fresh command for {config.safety.link_timeout} s: stopping")
+            self.announce(f"no fresh command for {safety.link_timeout} s: stopping")
         self._drive = supervised
-        driven = speeds(self._drive, k, config.sample_time, config.safety)
-        self._speeds = self.services.allow(*driven)
+        self._speeds = self._armed(*speeds(self._drive, k, Ts, safety))
 
     def close_tick(self) -> TraceRow:
         """Step to k + 1, unless the run ends at k; says what happened at k."""

@@ -15,8 +15,8 @@ def serve_lockstep(
     endpoint: Link,
     recorder: Recorder,
     patience: Patience,
-    watch: Watch,
     progress: Callable[[int], None],
+    watch: Watch | None = None,
 ) -> Outcome:
     """Run a gateway to its last tick; `progress` is told of each tick that is over.
 
@@ -28,7 +28,7 @@ def serve_lockstep(
         StationSilentError: the station never came, or fell silent.
         EndpointError: the link itself broke.
     """
-    conversation = Conversation(gateway, endpoint, recorder, patience, watch)
+    conversation = Conversation(gateway, endpoint, recorder, patience, watch=watch)
     try:
         conversation.wait_for_station()
         while gateway.outcome is None:

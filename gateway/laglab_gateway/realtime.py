@@ -53,18 +53,19 @@ def serve_realtime(
     endpoint: Link,
     recorder: Recorder,
     patience: Patience,
-    watch: Watch,
     progress: Callable[[int], None],
     period: float,
     now: Callable[[], float] = monotonic,
+    watch: Watch | None = None,
 ) -> tuple[Outcome, Lateness]:
     """Run a gateway to its last tick, one tick every `period` [s] of the clock `now`.
+    Those who `watch` are looked after meanwhile.
 
     Raises:
         StationSilentError: the station never came, or fell silent for longer than allowed.
         EndpointError: the link itself broke.
     """
-    conversation = Conversation(gateway, endpoint, recorder, patience, watch, now)
+    conversation = Conversation(gateway, endpoint, recorder, patience, now, watch)
     lateness = Lateness(period)
     try:
         conversation.wait_for_station()
@@ -76,6 +77,7 @@ def serve_realtime(
                 gateway.announce(f"cannot keep up: tick {gateway.tick} is {late:.3f} s late")
             conversation.send(gateway.open_tick())
             gateway.settle()
+            conversation.ask_time()
             answer = _listen_until(deadline + period, gateway, conversation)
             recorder.timing(TimingRow(gateway.tick, late, answer))
             progress(conversation.finish_tick())

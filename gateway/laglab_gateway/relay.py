@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from laglab_gateway.fates import Fates
-from laglab_gateway.services import RobotState, Services, standard_parameters
+from laglab_gateway.services import RobotState, Services
 from laglab_gateway.side import GatewayConfig, Outcome, RobotSide, reason_of
 from laglab_gateway.timeline import Direction
 from laglab_gateway.trace import TraceRow
@@ -55,12 +55,10 @@ class Relay(RobotSide):
     def __init__(
         self,
         config: GatewayConfig,
+        services: Services,
         fates: Mapping[Direction, Fates] | None = None,
-        services: Services | None = None,
         codec: Codec | None = None,
     ) -> None:
-        n, m = config.command_delay, config.measurement_delay
-        services = services or Services(standard_parameters(n, m), placeable=False)
         super().__init__(config, services, fates, codec)
         self.under_way = False
         self.robot_end: End | None = None
@@ -142,7 +140,7 @@ class Relay(RobotSide):
 
     def _allowed(self, command: Command) -> Command:
         """For the robot, with its stamp, and without the estimate that went before it."""
-        v, omega = self.services.allow(command.v, command.omega)
+        v, omega = self._armed(command.v, command.omega)
         return Command(v, omega, command.tick, ROBOT_SYSTEM, ROBOT_COMPONENT, estimates=0)
 
     def close_tick(self) -> TraceRow:

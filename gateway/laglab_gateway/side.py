@@ -183,11 +183,22 @@ class RobotSide(ABC):
 
     def _follow(self, command: Command, tick: int) -> bool:
         """Follow from `tick` on a command that came across; False, and counted, when refused."""
-        if refused := refusal(self._drive, command, self._config.safety):
+        if refused := refusal(self._drive, command, self.safety):
             self.audit.refused[refused] += 1
             return False
         self._drive = follow(command, tick)
         return True
+
+    @property
+    def safety(self) -> Safety:
+        """The limits and times now: ground stations may set some of them."""
+        now = self.services.parameters
+        limits = (now["V_MAX"] or None, now["OMEGA_MAX"] or None)
+        return Safety(*limits, now["LINK_TIMEOUT"], self._config.safety.ramp)
+
+    def _armed(self, v: float, omega: float) -> tuple[float, float]:
+        """These speeds, or standstill while the robot is disarmed."""
+        return (v, omega) if self.services.arming.armed else (0.0, 0.0)
 
     def announce(self, text: str) -> None:
         """Warn everybody who listens, in at most 50 characters, at the end of this tick."""
@@ -203,6 +214,11 @@ class RobotSide(ABC):
         notices, self._notices = self._notices, []
         self._replies += notices
         return notices
+
+    def ask_time(self) -> list[bytes]:
+        """The question how far the station's clock is away, if there is a clock to compare with."""
+        timesync = self.services.timesync
+        return [self._sender.frame(timesync.ask())] if timesync else []
 
     def take_link_rows(self) -> list[LinkRow]:
         """What the link did to the frames that entered it since the last call."""

@@ -2,6 +2,7 @@
 
 import multiprocessing
 import signal
+import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
@@ -102,7 +103,8 @@ def station_process(scenario: Scenario, url: str, reports: Connection) -> None:
     """The remote station's side."""
     try:
         with open_endpoint(url) as endpoint:
-            run_station(Station(station_config(scenario)), endpoint, scenario.silence_timeout)
+            station = Station(station_config(scenario), clock=time.monotonic_ns)
+            run_station(station, endpoint, scenario.silence_timeout)
     except SIDE_ERRORS as error:
         reports.send(Failed(str(error)))
 

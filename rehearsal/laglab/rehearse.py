@@ -1,6 +1,7 @@
 """One rehearsal: start the two sides, follow them, and keep what they leave."""
 
 import tempfile
+import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
@@ -75,7 +76,7 @@ def _inline(scenario: Scenario, directory: Path, progress: Callable[[int], None]
     clock = LoopClock(progress)
     try:
         with open_gateway(scenario) as gateway, closing(FileRecorder(directory)) as recorder:
-            endpoint = InlineEndpoint(Station(station_config(scenario)))
+            endpoint = InlineEndpoint(Station(station_config(scenario), clock=time.monotonic_ns))
             outcome, statistics = serve(scenario, gateway, endpoint, recorder, Patience(), clock)
     except SIDE_ERRORS as error:
         return Ending(None, str(error), clock.seconds, {})

@@ -91,6 +91,12 @@ def _link_rows(audit: dict[str, Any]) -> dict[str, str]:
         rows["refused commands"] = refused
     if stops:
         rows["failsafe stops at ticks"] = stops
+    if clocks := audit.get("timesync"):
+        rows["the station's clock"] = (
+            f"{1e3 * clocks['offset_s']:.3f} ms ahead, "
+            f"round trip p50 {1e3 * clocks['round_trip_p50_s']:.2f} ms, "
+            f"p99 {1e3 * clocks['round_trip_p99_s']:.2f} ms"
+        )
     return rows
 
 

@@ -1,5 +1,6 @@
 """The two sides of a rehearsal, each made from the scenario alone."""
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -25,11 +26,13 @@ from laglab_gateway import (
     RecordedFates,
     Recorder,
     Relay,
-    Watch,
+    Services,
+    Timesyncing,
     read_link_log,
     serve_lockstep,
     serve_realtime,
     serve_remote,
+    standard_parameters,
 )
 from laglab_protocol import Endpoint, open_endpoint
 
@@ -64,13 +67,22 @@ def gateway_config(scenario: Scenario) -> GatewayConfig:
     )
 
 
+def robot_services(scenario: Scenario, free_running: bool, placeable: bool = True) -> Services:
+    """What ground stations find; where time is simulated, no clocks are compared."""
+    n, m = scenario.command_delay, scenario.measurement_delay
+    timesync = Timesyncing(time.monotonic_ns) if free_running else None
+    parameters = standard_parameters(n, m, scenario.safety)
+    return Services(parameters, timesync=timesync, placeable=placeable)
+
+
 @contextmanager
 def open_gateway(scenario: Scenario) -> Iterator[Gateway]:
     """The robot's side, its FMU loaded until the context ends."""
     parameters = robot_parameters(scenario)
     with Robot.open(scenario.fmi, parameters) as robot:
         plant = FmuPlant(robot, parameters)
-        yield Gateway(plant, gateway_config(scenario), link_fates(scenario))
+        services = robot_services(scenario, free_running=scenario.pace == "realtime")
+        yield Gateway(plant, gateway_config(scenario), link_fates(scenario), services)
 
 
 DIRECTIONS: tuple[Direction, ...] = ("command", "measurement")
@@ -100,15 +112,28 @@ def serve(
     progress: Callable[[int], None],
 ) -> tuple[Outcome, dict[str, Any]]:
     """Run the robot's side at the scenario's pace: how it ended, and what the stamps tell."""
-    watch = Watch(gateway.services, [])
     if scenario.pace == "lockstep":
-        outcome = serve_lockstep(gateway, endpoint, recorder, patience, watch, progress)
+        outcome = serve_lockstep(gateway, endpoint, recorder, patience, progress)
         return outcome, {"link": gateway.audit.report()}
     period = scenario.sample_time / scenario.speed
-    outcome, lateness = serve_realtime(
-        gateway, endpoint, recorder, patience, watch, progress, period
-    )
-    return outcome, {"link": gateway.audit.report(), "timing": lateness.report()}
+    outcome, lateness = serve_realtime(gateway, endpoint, recorder, patience, progress, period)
+    link = gateway.audit.report() | {"timesync": clock_audit(gateway.services)}
+    return outcome, {"link": link, "timing": lateness.report()}
+
+
+def clock_audit(services: Services) -> dict[str, float] | None:
+    """What TIMESYNC found: the station's clock less ours, and the way there and back [s]."""
+    timesync = services.timesync
+    if timesync is None or not timesync.samples:
+        return None
+    offsets, round_trips = np.array(timesync.samples).T * 1e-9
+    p50, p99 = np.percentile(round_trips, (50, 99))
+    return {
+        "offset_s": float(np.median(offsets)),
+        "round_trip_p50_s": float(p50),
+        "round_trip_p99_s": float(p99),
+        "samples": len(offsets),
+    }
 
 
 def serve_real(
@@ -120,10 +145,10 @@ def serve_real(
     progress: Callable[[int], None],
 ) -> tuple[Outcome, dict[str, Any]]:
     """Be the link in front of a real robot, at its own pace; as `serve`."""
-    relay = Relay(gateway_config(scenario), link_fates(scenario))
-    watch = Watch(relay.services, [])
-    outcome = serve_remote(relay, robot, endpoint, recorder, patience, watch, progress)
-    return outcome, {"link": relay.audit.report()}
+    services = robot_services(scenario, free_running=True, placeable=False)
+    relay = Relay(gateway_config(scenario), services, link_fates(scenario))
+    outcome = serve_remote(relay, robot, endpoint, recorder, patience, progress)
+    return outcome, {"link": relay.audit.report() | {"timesync": clock_audit(services)}}
 
 
 Serve = Callable[

@@ -99,7 +99,10 @@ static void call2(fmi2Component c, fmi2FMUstate *state) {
         case 8: fmi2SetInteger(c, vr, n, integers); break;
         case 9: fmi2GetBoolean(c, vr, n, booleans2); break;
         case 10: fmi2SetBoolean(c, vr, n, booleans2); break;
-        case 11: fmi2DoStep(c, floats[0], draw(2) ? 0.013 : floats[1] < 1e4 ? floats[1] : -1, 1); break;
+        case 11:
+            if (draw(9)) fmi2GetRealStatus(c, fmi2LastSuccessfulTime, floats);
+            fmi2DoStep(c, floats[0], draw(2) ? 0.013 : floats[1] < 1e4 ? floats[1] : -1, 1);
+            break;
         case 12: fmi2GetFMUstate(c, draw(20) ? state : NULL); break;
         case 13: fmi2SetFMUstate(c, *state); break;
         case 14: fmi2FreeFMUstate(c, state); break;
@@ -151,7 +154,11 @@ static void call3(fmi3Instance c, fmi3FMUState *state) {
             break;
         case 14: fmi3GetBoolean(c, vr, n, booleans, m); break;
         case 15: fmi3SetBoolean(c, vr, n, booleans, m); break;
-        case 16: fmi3DoStep(c, floats[0], draw(2) ? 0.013 : floats[1] < 1e4 ? floats[1] : -1, 1, b, b + 1, b + 2, out); break;
+        case 16:
+            references[0] = VR_TIME;
+            if (draw(9)) fmi3GetFloat64(c, references, 1, floats, 1);
+            fmi3DoStep(c, floats[0], draw(2) ? 0.013 : floats[1] < 1e4 ? floats[1] : -1, 1, b, b + 1, b + 2, out);
+            break;
         case 17: fmi3GetFMUState(c, draw(20) ? state : NULL); break;
         case 18: fmi3SetFMUState(c, *state); break;
         case 19: fmi3FreeFMUState(c, state); break;

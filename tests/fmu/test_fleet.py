@@ -50,6 +50,8 @@ def test_mistakes_are_named() -> None:
         Fleet.open([])
     with pytest.raises(ValueError, match="2 sample times"):
         Fleet.open([RobotParameters(), RobotParameters(sample_time=0.02)])
+    with pytest.raises(CallError, match=r"robots = .* refused"):
+        Fleet.open([RobotParameters()] * 1_000_001)
     with pytest.raises(CallError, match="track = 0 refused"):
         Fleet.open([RobotParameters(), RobotParameters(track=0.0)])
     with Fleet.open(ROBOTS) as fleet:

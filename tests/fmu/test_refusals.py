@@ -110,6 +110,17 @@ def test_a_step_that_leads_nowhere(make_face: Callable[..., Any], name: str, ste
 
 
 @pytest.mark.parametrize("name", NAMES)
+def test_a_step_from_another_time(make_face: Callable[..., Any], name: str) -> None:
+    face = make_face(name, "CoSimulation")
+    face.start()
+    face.step(0.0)
+    for time in (0.0, 0.02, math.nan):
+        with refused(face, ERROR, "currentCommunicationPoint" if time == time else "time nan"):
+            face.step(time)
+    face.step(0.01)
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_calls_in_the_wrong_state(make_face: Callable[..., Any], name: str) -> None:
     face = make_face(name, "CoSimulation")
     with refused(face, ERROR, f"fmi{name[-1]}DoStep", "instantiated"):

@@ -130,12 +130,25 @@ def test_a_refused_input_leaves_the_robot_usable() -> None:
         (RobotParameters(track=0.0), "track"),
         (RobotParameters(wheel_noise_variance=-1.0), "wheel_noise_variance"),
         (RobotParameters(start=(0.0, math.inf, 0.0)), "y_start"),
-        (RobotParameters(seed=-1), "seed"),
     ],
 )
 def test_bad_parameters_are_named(version: int, parameters: RobotParameters, name: str) -> None:
     with pytest.raises(CallError, match=f"{name} = .* refused"), Robot.open(version, parameters):
         pass
+
+
+@pytest.mark.parametrize("seed", [-1, 2**31, 2**32 + 5])
+def test_a_seed_out_of_range(seed: int) -> None:
+    with pytest.raises(ValueError, match=f"seed is {seed}"):
+        Robot.open(2, RobotParameters(seed=seed))
+
+
+def test_a_closed_robot_says_so() -> None:
+    robot = Robot.open(3, QUIET)
+    robot.close()
+    robot.close()
+    with pytest.raises(CallError, match="closed"):
+        robot.step(0.0, 0.0)
 
 
 def test_unknown_version_and_integration() -> None:

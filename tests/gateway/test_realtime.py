@@ -14,7 +14,6 @@ from laglab_gateway import (
     Patience,
     StationSilentError,
     TraceRow,
-    Watch,
     serve_realtime,
 )
 from laglab_gateway.recorder import TimingRow
@@ -102,9 +101,8 @@ def run(
     link: SimulatedLink, n: int, last_tick: int, silence: float = 3.0
 ) -> tuple[Gateway, Kept, Outcome, dict[str, float]]:
     gateway, kept = Gateway(StillPlant(), GatewayConfig(n, 0, last_tick, 0.01)), Kept()
-    watch = Watch(gateway.services, [])
     outcome, lateness = serve_realtime(
-        gateway, link, kept, Patience(silence=silence), watch, lambda _: None, PERIOD, link.now
+        gateway, link, kept, Patience(silence=silence), lambda _: None, PERIOD, link.now
     )
     return gateway, kept, outcome, lateness.report()
 

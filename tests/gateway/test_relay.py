@@ -13,7 +13,9 @@ from laglab_gateway import (
     RandomFates,
     Relay,
     Safety,
+    Services,
     TraceRow,
+    standard_parameters,
 )
 from laglab_protocol import (
     NO_COMMAND,
@@ -96,8 +98,21 @@ class Rig:
             self.forward()
 
 
-def relay(n: int = 0, m: int = 0, last_tick: int = 10**6, **options: object) -> Relay:
-    return Relay(GatewayConfig(n, m, last_tick, TS, **options))  # type: ignore[arg-type]
+def relay(
+    n: int = 1,
+    m: int = 0,
+    last_tick: int = 10**6,
+    safety: Safety | None = None,
+    commands: RandomFates | None = None,
+) -> Relay:
+    safety = safety or Safety()
+    services = Services(standard_parameters(n, m, safety), placeable=False)
+    config = GatewayConfig(n, m, last_tick, TS, safety)
+    return Relay(config, services, {"command": commands} if commands else None)
+
+
+def fates_of(event: Event) -> RandomFates:
+    return RandomFates(Impairments(), [event], np.random.default_rng(1))
 
 
 @pytest.mark.parametrize("first", [0, 5000])
@@ -133,7 +148,7 @@ def test_the_run_ends_so_many_ticks_after_its_first() -> None:
 
 
 def test_a_tick_that_lost_a_frame_is_passed_over() -> None:
-    rig = Rig(relay(1, 0))
+    rig = Rig(relay())
     rig.run(3)
     damaged = bytearray(rig.robot.tick())
     damaged[20] ^= 1
@@ -160,7 +175,7 @@ def test_several_ticks_in_one_piece_are_ticks_one_by_one() -> None:
 def test_what_a_robot_must_not_get_is_refused_and_counted(
     bad: tuple[float, float], why: str
 ) -> None:
-    rig = Rig(relay(1, 0, safety=Safety(v_limit=2.0)))
+    rig = Rig(relay(safety=Safety(v_limit=2.0)))
     rig.feed(rig.robot.tick())
     rig.say(Command(*bad, 0, 1, 1, 0))
     assert rig.forward() == []
@@ -169,12 +184,7 @@ def test_what_a_robot_must_not_get_is_refused_and_counted(
 
 def test_a_command_overtaken_on_the_link_is_stale() -> None:
     held_back = Impairments(reorder=1.0, reorder_by=0.05)
-    fates = {
-        "command": RandomFates(
-            Impairments(), [Event(0.0, 0.01, held_back)], np.random.default_rng(1)
-        )
-    }
-    rig = Rig(Relay(GatewayConfig(1, 0, 100, TS), fates))  # type: ignore[arg-type]
+    rig = Rig(relay(commands=fates_of(Event(0.0, 0.01, held_back))))
     rig.run(10)
     assert [row.v for row in rig.rows] == [0.0, 0.0] + [k / 1000 for k in range(1, 8)]
     assert rig.relay.audit.report()["refused"] == {"stale": 1}
@@ -182,8 +192,7 @@ def test_a_command_overtaken_on_the_link_is_stale() -> None:
 
 def test_the_links_timeline_goes_by_the_runs_time_not_the_robots() -> None:
     outage = Event(0.1, 0.05, Impairments(loss=1.0))
-    fates = {"command": RandomFates(Impairments(), [outage], np.random.default_rng(1))}
-    rig = Rig(Relay(GatewayConfig(1, 0, 100, TS), fates), first=3000)  # type: ignore[arg-type]
+    rig = Rig(relay(commands=fates_of(outage)), first=3000)
     rig.run(30)
     lost = [row.tick for row in rig.relay.take_link_rows() if row.fate == "lost"]
     assert lost == list(range(10, 15))
@@ -191,7 +200,7 @@ def test_the_links_timeline_goes_by_the_runs_time_not_the_robots() -> None:
 
 
 def test_the_stations_end_is_the_outcome_at_the_robots_next_tick() -> None:
-    rig = Rig(relay(1, 0))
+    rig = Rig(relay())
     rig.run(5)
     rig.say(End(4, EndReason.DIVERGED))
     rig.feed(rig.robot.tick())
@@ -202,14 +211,14 @@ def test_the_stations_end_is_the_outcome_at_the_robots_next_tick() -> None:
     ("said", "meant"), [(EndReason.INTERRUPTED, EndReason.INTERRUPTED), (77, EndReason.FAILED)]
 )
 def test_the_robots_end_is_the_outcome_at_once(said: int, meant: EndReason) -> None:
-    rig = Rig(relay(1, 0))
+    rig = Rig(relay())
     rig.run(5)
     rig.feed(rig.robot.sender.frame(End(4, said)))
     assert rig.relay.outcome == Outcome(meant, 4)
 
 
 def test_only_the_robot_itself_is_heard() -> None:
-    rig = Rig(relay(1, 0))
+    rig = Rig(relay())
     stranger = Sender(7, ROBOT_COMPONENT)
     rig.feed(stranger.frame(Tick(0, 0)) + stranger.frame(End(0, 0)))
     assert not rig.relay.under_way
@@ -217,7 +226,7 @@ def test_only_the_robot_itself_is_heard() -> None:
 
 
 def test_an_emergency_stop_stops_a_real_robot_for_good() -> None:
-    rig = Rig(relay(1, 0))
+    rig = Rig(relay())
     rig.run(5)
     rig.say(CommandLong(1.0, *[0.0] * 6, mavlink.MAV_CMD_DO_FLIGHTTERMINATION, 1, 1, 0))
     rig.run(5)

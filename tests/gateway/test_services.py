@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from laglab_gateway import Safety
 from laglab_gateway.services import (
     Parameter,
     RobotState,
@@ -48,7 +49,7 @@ REAL32 = mavlink.MAV_PARAM_TYPE_REAL32
 @pytest.fixture
 def services() -> Services:
     others = [Parameter("LAW_GAMMA", 3.0), Parameter("TRIES", 2, True, 1, 9, whole=True)]
-    return Services(standard_parameters(10, 20, others), armed=False)
+    return Services(standard_parameters(10, 20, Safety(), others), armed=False)
 
 
 def frame(message: Message, sender: tuple[int, int] = GCS) -> Frame:
@@ -85,10 +86,11 @@ def test_all_parameters_are_listed_in_order(services: Services) -> None:
         b"DELAY_M",
         b"V_MAX",
         b"OMEGA_MAX",
+        b"LINK_TIMEOUT",
         b"LAW_GAMMA",
         b"TRIES",
     ]
-    assert values[1] == ParamValue(20.0, 6, 1, b"DELAY_M", REAL32)
+    assert values[1] == ParamValue(20.0, 7, 1, b"DELAY_M", REAL32)
 
 
 @pytest.mark.parametrize(("index", "name"), [(1, b""), (-1, b"DELAY_M"), (1, b"ignored")])
@@ -96,7 +98,7 @@ def test_one_parameter_is_read_by_index_or_name(
     services: Services, index: int, name: bytes
 ) -> None:
     assert ask(services, ParamRequestRead(index, 1, 1, name)) == [
-        ParamValue(20.0, 6, 1, b"DELAY_M", REAL32)
+        ParamValue(20.0, 7, 1, b"DELAY_M", REAL32)
     ]
 
 
@@ -107,7 +109,7 @@ def set_parameter(services: Services, name: bytes, value: float) -> list[Message
 def test_a_safe_parameter_is_set(services: Services) -> None:
     (answer,) = set_parameter(services, b"V_MAX", 0.5)
 
-    assert answer == ParamValue(0.5, 6, 2, b"V_MAX", REAL32)
+    assert answer == ParamValue(0.5, 7, 2, b"V_MAX", REAL32)
     assert services.parameters["V_MAX"] == 0.5
 
 
@@ -137,7 +139,7 @@ def test_a_refused_setting_says_why_and_what_holds(
     "message",
     [
         ParamRequestRead(-1, 1, 1, b"NOTHING"),
-        ParamRequestRead(6, 1, 1, b""),
+        ParamRequestRead(7, 1, 1, b""),
         ParamRequestRead(-2, 1, 1, b""),
         ParamSet(1.0, 1, 1, b"\xff\xfe", REAL32),
     ],
@@ -152,26 +154,17 @@ def test_what_does_not_exist_is_said(services: Services, message: Message) -> No
 # Commands
 
 
-def test_arming_lets_the_robot_move(services: Services) -> None:
-    assert services.allow(1.0, 2.0) == (0.0, 0.0)
+def test_arming_and_disarming(services: Services) -> None:
     assert result(services, ARM, 1.0) == mavlink.MAV_RESULT_ACCEPTED
-    assert services.allow(1.0, 2.0) == (1.0, 2.0)
+    assert services.arming.armed
     assert result(services, ARM, 0.0) == mavlink.MAV_RESULT_ACCEPTED
-    assert services.allow(1.0, 2.0) == (0.0, 0.0)
-
-
-def test_limits_hold(services: Services) -> None:
-    services.arming.arm()
-    set_parameter(services, b"V_MAX", 0.5)
-    set_parameter(services, b"OMEGA_MAX", 0.25)
-
-    assert services.allow(1.0, -2.0) == (0.5, -0.25)
+    assert not services.arming.armed
 
 
 def test_an_emergency_stop_latches_until_the_pose_is_reset(services: Services) -> None:
     services.arming.arm()
     assert result(services, STOP, 1.0) == mavlink.MAV_RESULT_ACCEPTED
-    assert services.allow(1.0, 2.0) == (0.0, 0.0)
+    assert not services.arming.armed
     assert result(services, ARM, 1.0) == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
     assert result(services, RESET, 1.0, 2.0, math.nan) == mavlink.MAV_RESULT_ACCEPTED
 
@@ -262,7 +255,7 @@ def test_in_simulated_time_clocks_are_not_compared(services: Services) -> None:
 
 
 def test_a_question_of_time_is_answered() -> None:
-    services = Services(standard_parameters(0, 0), timesync=Timesyncing(lambda: 1000))
+    services = Services(standard_parameters(0, 0, Safety()), timesync=Timesyncing(lambda: 1000))
 
     assert ask(services, Timesync(0, 123)) == [Timesync(1000, 123)]
 
@@ -278,9 +271,9 @@ def test_offset_and_round_trip(offset: int, there: int, back: int) -> None:
     assert isinstance(answer, Timesync)
     ours.answer(answer)
 
-    assert ours.last is not None
-    assert ours.last.round_trip_ns == there + back
-    assert abs(ours.last.offset_ns - offset) <= abs(there - back) / 2 + 1
+    (sample,) = ours.samples
+    assert sample.round_trip_ns == there + back
+    assert abs(sample.offset_ns - offset) <= abs(there - back) / 2 + 1
 
 
 def test_an_answer_to_another_question_is_no_sample() -> None:
@@ -289,7 +282,7 @@ def test_an_answer_to_another_question_is_no_sample() -> None:
     ours.ask()
     ours.answer(Timesync(5, 77))
 
-    assert ours.last is None
+    assert ours.samples == []
 
 
 # Telemetry
@@ -377,10 +370,10 @@ REQUESTS = st.one_of(
 
 @given(st.lists(REQUESTS, max_size=20))
 def test_no_request_raises_and_every_answer_can_be_sent(requests: list[Message]) -> None:
-    services = Services(standard_parameters(10, 20), timesync=Timesyncing(lambda: 1))
+    services = Services(standard_parameters(10, 20, Safety()), timesync=Timesyncing(lambda: 1))
     sender = Sender(1, 1)
     for request in requests:
         for answer in ask(services, request):
             sender.frame(answer)
-        assert all(map(math.isfinite, services.allow(1.0, 1.0)))
+        assert 0.0 <= services.parameters["V_MAX"] <= 100.0
         assert services.parameters["DELAY_N"] == 10

@@ -8,6 +8,7 @@ import struct
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+from laglab_gateway.drive import Safety
 from laglab_protocol import (
     Frame,
     Message,
@@ -100,15 +101,20 @@ class Parameters:
 
 
 def standard_parameters(
-    command_delay: int, measurement_delay: int, others: Iterable[Parameter] = ()
+    command_delay: int,
+    measurement_delay: int,
+    safety: Safety,
+    others: Iterable[Parameter] = (),
 ) -> Parameters:
-    """What every gateway has: its delays [ticks], and its limits [m/s, rad/s], 0 for none."""
+    """What every gateway has: delays [ticks], limits [m/s, rad/s] (0: none), link timeout [s]."""
+    v_limit, omega_limit = safety.v_limit or 0.0, safety.omega_limit or 0.0
     return Parameters(
         [
             Parameter("DELAY_N", command_delay),
             Parameter("DELAY_M", measurement_delay),
-            Parameter("V_MAX", 0.0, settable=True, minimum=0.0, maximum=100.0),
-            Parameter("OMEGA_MAX", 0.0, settable=True, minimum=0.0, maximum=100.0),
+            Parameter("V_MAX", v_limit, settable=True, minimum=0.0, maximum=100.0),
+            Parameter("OMEGA_MAX", omega_limit, settable=True, minimum=0.0, maximum=100.0),
+            Parameter("LINK_TIMEOUT", safety.link_timeout, True, minimum=0.05, maximum=60.0),
             *others,
         ]
     )

@@ -61,12 +61,6 @@ class Services:
             return []
         return self.parameters.answer(frame) + self._commands.answer(frame)
 
-    def allow(self, v: float, omega: float) -> tuple[float, float]:
-        """What the robot makes of a command: within its limits, and nothing while disarmed."""
-        if not self.arming.armed:
-            return 0.0, 0.0
-        return _limited(v, self.parameters["V_MAX"]), _limited(omega, self.parameters["OMEGA_MAX"])
-
     def due(self, state: RobotState, now_us: int) -> list[Message]:
         """The telemetry that it is time to send to those who watch; by any steady clock [us]."""
         messages = []
@@ -90,10 +84,6 @@ class Services:
         else:
             self._intervals[number] = max(int(interval_us), SHORTEST_INTERVAL_US)
         return True
-
-
-def _limited(speed: float, limit: float) -> float:
-    return max(-limit, min(limit, speed)) if limit > 0 else speed
 
 
 def _pong(frame: Frame, message: Ping) -> list[Message]:

@@ -22,7 +22,7 @@ class Timesyncing:
     def __init__(self, clock: Callable[[], int]) -> None:
         self._clock = clock
         self._asked: int | None = None
-        self.last: Sample | None = None
+        self.samples: list[Sample] = []
 
     def ask(self) -> Timesync:
         """The question; the answer to any earlier one no longer counts."""
@@ -38,5 +38,5 @@ class Timesyncing:
             self._asked = None
             # The notes' offset is ours minus the peer's; the sign here is the peer's minus ours.
             offset = message.tc1 - (message.ts1 + now_ns) // 2
-            self.last = Sample(offset, now_ns - message.ts1)
+            self.samples.append(Sample(offset, now_ns - message.ts1))
         return []

@@ -1,5 +1,6 @@
 """``laglab gateway`` and ``laglab controller``: each side on its own."""
 
+import time
 from contextlib import closing
 from pathlib import Path
 from typing import Annotated
@@ -57,5 +58,6 @@ def controller(
     """Be the remote station of SCENARIO: stabilise the robot at the other end."""
     with open_endpoint(endpoint) as link:
         typer.echo(f"calling {link.name}", err=True)
-        end = run_station(Station(station_config(scenario)), link, scenario.silence_timeout)
+        station = Station(station_config(scenario), clock=time.monotonic_ns)
+        end = run_station(station, link, scenario.silence_timeout)
     raise typer.Exit(EXIT_CODES[EndReason(end.reason)])

@@ -1,0 +1,71 @@
+"""A rover for other people's programs to find: `python rover.py URL`.
+
+The whole robot's side with its station inside, disarmed, watched at URL; until SIGTERM.
+"""
+
+import sys
+import time
+
+import numpy as np
+
+from laglab.inline import InlineEndpoint
+from laglab_controller import Law, RobotModel, Station, StationConfig
+from laglab_fmu import Robot, RobotParameters
+from laglab_gateway import (
+    FmuPlant,
+    Gateway,
+    GatewayConfig,
+    NoRecorder,
+    Patience,
+    Safety,
+    Services,
+    Watch,
+    Watcher,
+    serve_lockstep,
+    standard_parameters,
+)
+from laglab_protocol import ROBOT_COMPONENT, ROBOT_SYSTEM, Codec, open_endpoint
+
+START = (-3.0, -2.0, 0.0)
+PARAMETERS = RobotParameters(start=START, noise=False)
+FOREVER = 10**9
+
+
+def station() -> Station:
+    model = RobotModel(
+        sample_time=PARAMETERS.sample_time,
+        wheel_radius=PARAMETERS.wheel_radius,
+        track=PARAMETERS.track,
+        Q=0.01 * np.eye(2),
+        R=np.diag(PARAMETERS.measurement_variance),
+    )
+    law = Law(goal=(0.0, 0.0, 0.0), v_max=1.0, omega_max=1.7, goal_tolerance=0.03)
+    return Station(
+        StationConfig(
+            estimator="raw",
+            model=model,
+            law=law,
+            initial_estimate=np.array(START),
+            initial_covariance=1e-4 * np.eye(3),
+            command_delay=0,
+        )
+    )
+
+
+def _breathe(_: int) -> None:
+    """Five times real time, and room for others."""
+    time.sleep(0.002)
+
+
+def main(url: str) -> None:
+    services = Services(standard_parameters(0, 0, Safety()), armed=False)
+    config = GatewayConfig(0, 0, FOREVER, PARAMETERS.sample_time)
+    with Robot.open(3, PARAMETERS) as robot, open_endpoint(url) as endpoint:
+        gateway = Gateway(FmuPlant(robot, PARAMETERS), config, services=services)
+        watch = Watch(services, [Watcher(endpoint, Codec(ROBOT_SYSTEM, ROBOT_COMPONENT))])
+        link = InlineEndpoint(station())
+        serve_lockstep(gateway, link, NoRecorder(), Patience(), _breathe, watch)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

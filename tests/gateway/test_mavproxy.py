@@ -1,0 +1,114 @@
+"""MAVProxy, with our dialect: finds the robot, reads and sets parameters, arms it, sees it move."""
+
+import os
+import queue
+import re
+import shutil
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+PROGRAM = """
+import runpy, sys
+from laglab_protocol.dialect import offer_to_pymavlink
+offer_to_pymavlink()
+sys.argv = ["mavproxy.py", "--master=udp:127.0.0.1:{port}", "--dialect=laglab",
+            "--state-basedir={folder}", "--aircraft=rover", "--default-modules=param,arm"]
+runpy.run_path({script!r}, run_name="__main__")
+"""
+PATIENCE = 20.0
+
+
+class MavProxy:
+    """The program, spoken to as a person does."""
+
+    def __init__(self, process: subprocess.Popen[str]) -> None:
+        assert process.stdin is not None
+        self._stdin = process.stdin
+        self._lines: queue.Queue[str] = queue.Queue()
+        self._process = process
+        self._heard: list[str] = []
+        self._reader = threading.Thread(target=self._read)
+        self._reader.start()
+
+    def _read(self) -> None:
+        assert self._process.stdout is not None
+        for line in self._process.stdout:
+            self._lines.put(line)
+
+    def say(self, line: str) -> None:
+        self._stdin.write(line + "\n")
+        self._stdin.flush()
+
+    def hears(self, pattern: str) -> re.Match[str]:
+        """The next line in which `pattern` is found."""
+        deadline = time.monotonic() + PATIENCE
+        while (left := deadline - time.monotonic()) > 0:
+            try:
+                self._heard.append(self._lines.get(timeout=left))
+            except queue.Empty:
+                break
+            if match := re.search(pattern, self._heard[-1]):
+                return match
+        raise AssertionError(f"no {pattern!r} in:\n{''.join(self._heard)}")
+
+    def end(self) -> None:
+        self._process.kill()
+        self._reader.join()
+
+
+@pytest.fixture
+def mavproxy(port: int, tmp_path: Path) -> Iterator[MavProxy]:
+    beside = Path(sys.executable).parent / "mavproxy.py"
+    script = beside if beside.is_file() else shutil.which("mavproxy.py")
+    assert script, "MAVProxy is not installed: pip install laglab[test]"
+    program = PROGRAM.format(port=port, folder=tmp_path, script=str(script))
+    with subprocess.Popen(
+        [sys.executable, "-c", program],
+        env=os.environ | {"MAVLINK20": "1"},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        cwd=tmp_path,
+    ) as process:
+        running = MavProxy(process)
+        yield running
+        running.end()
+
+
+def north_and_east(mavproxy: MavProxy) -> tuple[float, float]:
+    mavproxy.say("status LOCAL_POSITION_NED")
+    match = mavproxy.hears(
+        r"LOCAL_POSITION_NED \{time_boot_ms : \d+, x : ([-\d.e]+), y : ([-\d.e]+)"
+    )
+    return float(match[1]), float(match[2])
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("rover")
+def test_mavproxy_finds_reads_sets_arms_and_sees_it_move(mavproxy: MavProxy) -> None:
+    mavproxy.hears("Detected vehicle 1:1")
+    mavproxy.hears("Received 5 parameters")
+
+    mavproxy.say("param set V_MAX 1.5")
+    time.sleep(0.5)  # it sends, and tells nothing when it is confirmed
+    mavproxy.say("param show V_MAX")
+    mavproxy.hears(r"V_MAX +1\.5")
+
+    assert north_and_east(mavproxy) == (-2.0, -3.0)
+    mavproxy.say("arm throttle")
+    mavproxy.hears("COMPONENT_ARM_DISARM: ACCEPTED")
+    mavproxy.hears("ARMED")
+    deadline = time.monotonic() + PATIENCE
+    while north_and_east(mavproxy) == (-2.0, -3.0):
+        assert time.monotonic() < deadline, "armed, but it does not move"
+        time.sleep(0.2)
+
+    mavproxy.say("disarm")
+    mavproxy.hears("DISARMED")

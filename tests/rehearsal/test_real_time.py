@@ -1,0 +1,47 @@
+"""Runs on the wall clock, as the command makes them."""
+
+import csv
+import json
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+Laglab = Callable[..., subprocess.CompletedProcess[str]]
+
+
+def test_lateness_is_kept_apart_from_the_trace(laglab: Laglab, tmp_path: Path) -> None:
+    options = ("--pace", "realtime", "--speed", "4", "--duration", "4", "--out", "run")
+    assert laglab("run", "lab", *options).returncode == 0
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text())
+    assert summary["wall_time_s"] == pytest.approx(1.0, abs=0.1)
+    assert summary["real_time_factor"] == pytest.approx(4.0, rel=0.1)
+    timing = summary["timing"]
+    assert timing.keys() == {"p50_s", "p99_s", "max_s", "missed_deadlines"}
+    assert 0 < timing["p50_s"] <= timing["p99_s"] <= timing["max_s"]
+    with (tmp_path / "run" / "timing.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [int(row["tick"]) for row in rows] == list(range(401))
+    assert max(float(row["lateness"]) for row in rows) == timing["max_s"]
+    assert "lateness" not in (tmp_path / "run" / "trace.csv").read_text()
+
+
+def test_the_stamps_and_timesync_tell_of_the_real_link(laglab: Laglab, tmp_path: Path) -> None:
+    options = ("--pace", "realtime", "--duration", "2", "--noise", "--out", "run")
+    result = laglab("run", "fig4", *options)
+    assert result.returncode == 0
+    link = json.loads((tmp_path / "run" / "summary.json").read_text())["link"]
+    # n = 0, and still the first command can only come into force one tick after its measurement.
+    assert link["command"]["measured"]["min"] == 1
+    assert link["timesync"]["samples"] >= 15
+    assert abs(link["timesync"]["offset_s"]) < 0.05  # one machine, one clock
+    assert 0 < link["timesync"]["round_trip_p50_s"] < 0.05
+    assert "round trip" in result.stdout
+
+
+def test_a_machine_that_cannot_keep_up_is_warned_of(laglab: Laglab) -> None:
+    options = ("--pace", "realtime", "--speed", "5000", "--duration", "5", "--out", "run")
+    result = laglab("run", "lab", *options)
+    assert "warning: " in result.stderr
+    assert "cannot keep up" in result.stderr
