@@ -24,20 +24,25 @@ Errors = dict[str, float]
 _wrapped = np.vectorize(wrap, otypes=[np.float64])
 
 
-def goal_errors(trace: Trace, scenario: Scenario) -> tuple[NDArray[np.float64], ...]:
-    """Distance to the goal ρ [m] and heading error [rad] at every tick."""
+def goal_errors(
+    pose: NDArray[np.float64], scenario: Scenario
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Distance to the goal ρ [m] and heading error [rad] of poses, shape (n, 3)."""
     x, y, theta = scenario.goal
-    pose = robot_pose(trace)
     rho = np.hypot(pose[:, 0] - x, pose[:, 1] - y)
     return rho, _wrapped(pose[:, 2] - theta)
 
 
 def has_converged(trace: Trace, scenario: Scenario) -> bool:
-    """ρ < 0.06 m and |θ error| < 0.05 rad at every tick of the last second."""
-    rho, theta_error = goal_errors(trace, scenario)
-    last_second = trace["time"] >= trace["time"][-1] - 1.0
-    at_goal = (rho < DISTANCE_BOUND) & (np.abs(theta_error) < HEADING_BOUND)
-    return bool(at_goal[last_second].all())
+    """ρ < 0.06 m and |θ error| < 0.05 rad at every tick of the last second.
+
+    Where the pose is measured, in the second's mean: the sensor's noise does not move the robot.
+    """
+    last_second = robot_pose(trace)[trace["time"] >= trace["time"][-1] - 1.0]
+    if is_measured(trace):
+        last_second = np.nanmean(last_second, axis=0, keepdims=True)
+    rho, theta_error = goal_errors(last_second, scenario)
+    return bool(((rho < DISTANCE_BOUND) & (np.abs(theta_error) < HEADING_BOUND)).all())
 
 
 def deviation(trace: Trace, estimates: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -66,7 +71,7 @@ def summarise(
     scenario: Scenario, transport: Transport, ending: Ending, trace: Trace
 ) -> dict[str, Any]:
     """The contents of ``summary.json``; values that are not finite become null."""
-    rho, theta_error = goal_errors(trace, scenario)
+    rho, theta_error = goal_errors(robot_pose(trace), scenario)
     completed = ending.outcome is not None and ending.outcome.reason is EndReason.COMPLETED
     ticks = int(trace["tick"][-1] - trace["tick"][0])
     simulated = ticks * scenario.sample_time
