@@ -2,8 +2,8 @@
 
 One tick (the order is the specification's): `open_tick` samples the sensor and gives the frames
 for the station; `receive` takes the station's bytes; `settle` lets the commands that are due come
-into force; `close_tick` says what happened and steps the plant. In lock-step `settle` waits for
-the answer to this tick, so that n = 0 means no delay; in real time it comes right after
+into force and sets the plant going; `close_tick` says what happened. In lock-step `settle` waits
+for the answer to this tick, so that n = 0 means no delay; in real time it comes right after
 `open_tick`, so what arrives during a tick counts from the next one on.
 """
 
@@ -61,7 +61,10 @@ class Gateway(RobotSide):
         return Measurement(x, y, theta, *self._speeds, self.tick, self._drive.command_tick)
 
     def settle(self) -> None:
-        """Let the commands that have come across the link take force, and the failsafe watch."""
+        """Let the commands that have come across the link take force, and the failsafe watch.
+
+        Then the plant is on its way to k + 1, unless the run ends at k.
+        """
         k, Ts, safety = self.tick, self._config.sample_time, self.safety
         for command, _ in self._commands.due(k):
             self.audit.command.arrived(command.tick, k)
@@ -72,12 +75,13 @@ class Gateway(RobotSide):
             self.announce(f"no fresh command for {safety.link_timeout} s: stopping")
         self._drive = supervised
         self._speeds = self._armed(*speeds(self._drive, k, Ts, safety))
+        if self._ending is None:
+            self._plant.step(*self._speeds)
 
     def close_tick(self) -> TraceRow:
-        """Step to k + 1, unless the run ends at k; says what happened at k."""
+        """On to k + 1, unless the run ends at k; says what happened at k."""
         row = self._row(self._reading[:3], self._reading[3:6], self._speeds)
         self._close()
         if self.outcome is None:
-            self._plant.step(*self._speeds)
             self._begin_tick(self.tick + 1)
         return row

@@ -43,7 +43,7 @@ def serve_lockstep(
 
 def _exchange(gateway: Gateway, conversation: Conversation) -> None:
     """Send this tick until it is answered; the station answers a repeat with the same."""
-    conversation.send(gateway.open_tick())
+    conversation.send_tick()
     while not conversation.listen_for(lambda: gateway.answered):
         conversation.check_silence()
         conversation.send(gateway.repeat_tick())

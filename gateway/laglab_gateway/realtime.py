@@ -75,7 +75,7 @@ def serve_realtime(
             late = now() - deadline
             if lateness.add(late):
                 gateway.announce(f"cannot keep up: tick {gateway.tick} is {late:.3f} s late")
-            conversation.send(gateway.open_tick())
+            conversation.send_tick()
             gateway.settle()
             conversation.ask_time()
             answer = _listen_until(deadline + period, gateway, conversation)

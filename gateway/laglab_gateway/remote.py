@@ -134,5 +134,5 @@ def _relay_ticks(
         if relay.outcome is not None:
             return
         conversation.check_silence()
-        conversation.send(relay.open_tick())
+        conversation.send_tick()
         conversation.ask_time()

@@ -42,13 +42,8 @@ HEADER = ",".join(TraceRow._fields) + "\n"
 
 def format_row(row: tuple[int | float | str | None, ...]) -> str:
     """`repr` of a float is the shortest text that reads back to the same double."""
-    return ",".join(map(_format_cell, row)) + "\n"
-
-
-def _format_cell(cell: float | str | None) -> str:
-    if cell is None:
-        return ""
-    return cell if isinstance(cell, str) else repr(cell)
+    cells = ["" if cell is None else cell if isinstance(cell, str) else repr(cell) for cell in row]
+    return ",".join(cells) + "\n"
 
 
 def read_trace(path: Path) -> Trace:

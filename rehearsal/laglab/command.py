@@ -4,7 +4,7 @@ import sys
 
 import typer
 
-from laglab.commands import compare, errata, fmu, run, scenarios, sides
+from laglab.commands import bench, compare, consistency, errata, fmu, run, scenarios, sides
 from laglab.errors import LaglabError, RunError, ScenarioError
 from laglab.processes import SIDE_ERRORS
 from laglab_controller import StationError
@@ -21,9 +21,11 @@ app = typer.Typer(
 app.command("run")(run.run)
 app.command("scenarios")(scenarios.scenarios)
 app.command("compare")(compare.compare)
+app.command("consistency")(consistency.consistency)
 app.command("errata")(errata.errata)
 app.command("gateway")(sides.gateway)
 app.command("controller")(sides.controller)
+app.add_typer(bench.app, name="bench")
 app.add_typer(fmu.app, name="fmu")
 
 LINK_LOST = (

@@ -12,7 +12,7 @@ from laglab.rehearse import Ending, Transport
 from laglab.scenario import Scenario
 from laglab.sides import robot_model
 from laglab.summary import deviation, loop_estimates, rms_error, summarise, write_summary
-from laglab_controller import ESTIMATORS, constant_delay, replay
+from laglab_controller import ESTIMATORS, Replay, constant_delay, replay
 from laglab_gateway import Trace
 
 
@@ -38,13 +38,13 @@ def write_results(
 def compare(scenario: Scenario, trace: Trace) -> dict[str, NDArray[np.float64]]:
     """Deviations of the estimator in the loop, and of each in ``compare`` on the same record."""
     estimates = {scenario.estimator: loop_estimates(trace)} | {
-        name: reestimate(scenario, name, trace) for name in scenario.compare
+        name: reestimate(scenario, name, trace).estimates for name in scenario.compare
     }
     return {name: deviation(trace, values) for name, values in estimates.items()}
 
 
-def reestimate(scenario: Scenario, name: str, trace: Trace) -> NDArray[np.float64]:
-    """What the named estimator makes of a record, shape (ticks + 1, 3)."""
+def reestimate(scenario: Scenario, name: str, trace: Trace) -> Replay:
+    """What the named estimator makes of a record."""
     estimator = ESTIMATORS[name].make(robot_model(scenario))
     inputs = np.stack([trace["v"], trace["omega"]], axis=1)[:-1]
     measurements = np.stack([trace[f"{axis}_meas"] for axis in ("x", "y", "theta")], axis=1)
@@ -54,7 +54,7 @@ def reestimate(scenario: Scenario, name: str, trace: Trace) -> NDArray[np.float6
         scenario.initial_covariance * np.eye(3),
         inputs,
         constant_delay(measurements, scenario.measurement_delay),
-    ).estimates
+    )
 
 
 def results_table(summary: dict[str, Any]) -> Table:
