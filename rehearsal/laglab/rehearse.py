@@ -9,7 +9,6 @@ from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any, Literal
 
-from laglab.errors import ScenarioError
 from laglab.inline import InlineEndpoint
 from laglab.processes import (
     SIDE_ERRORS,
@@ -55,18 +54,12 @@ def rehearse(
 ) -> Ending:
     """Run both sides to the end; trace, log and scenario are then in ``directory``.
 
-    The robot is the FMU, or the real one at the address `plant`.
-
-    Raises:
-        ScenarioError: a real robot, which has a clock of its own, and no link to the station.
+    The robot is the FMU, or the real one at the address `plant`, but for `inline`.
     """
     directory.mkdir(parents=True, exist_ok=True)
     (directory / SCENARIO_FILE).write_text(scenario.to_toml(), encoding="utf-8")
     if transport == "inline":
-        if plant is not None:
-            raise ScenarioError(
-                "--plant: a real robot does not wait: take --transport udp or serial"
-            )
+        assert plant is None, "a real robot does not wait for a station in this process"
         return _inline(scenario, directory, progress)
     with _gateway_url(transport) as url:
         return _two_processes(scenario, plant, url, directory, progress)

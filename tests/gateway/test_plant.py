@@ -5,15 +5,46 @@ import re
 import signal
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 
-from laglab_gateway import Trace, read_trace
-from laglab_protocol import Command, End, Measurement, Tick, read_tlog
+from laglab_fmu import Robot, RobotParameters
+from laglab_gateway import (
+    FmuPlant,
+    Gateway,
+    GatewayConfig,
+    NoRecorder,
+    Outcome,
+    Patience,
+    Relay,
+    RobotSilentError,
+    Safety,
+    Services,
+    Trace,
+    read_trace,
+    serve_realtime,
+    serve_remote,
+    standard_parameters,
+)
+from laglab_protocol import (
+    STATION_COMPONENT,
+    STATION_SYSTEM,
+    Command,
+    End,
+    EndReason,
+    Heartbeat,
+    Measurement,
+    Receiver,
+    Sender,
+    Tick,
+    open_endpoint,
+    read_tlog,
+)
 
 Process = Any
 Start = Callable[..., Process]
@@ -109,7 +140,6 @@ def assert_the_stamps_tell_the_delays(log: Path) -> None:
     in_force_after = [delay for stamp, delay in echoed.items() if stamp >= 0]
     # An answer that comes after the robot's next tick, on a busy machine, is that much later.
     assert min(in_force_after) == N
-    assert np.median(in_force_after) == N
     assert {type(message) for message in messages} > {Command, Measurement, Tick, End}
 
 
@@ -133,7 +163,7 @@ def test_a_run_with_a_real_robot_says_that_its_pose_is_measured(
     assert summary["rms_error"]["x"] < 0.03
     link = summary["link"]
     assert link["measurement"]["measured"]["mean"] == M
-    assert N <= link["command"]["measured"]["mean"] < N + 1
+    assert link["command"]["measured"]["min"] == N
     assert link["timesync"]["samples"] > 0
     assert (tmp_path / "run" / "figure.png").exists()
 
@@ -170,33 +200,54 @@ def test_a_dead_station_lets_the_robot_stop_by_its_own_failsafe(
     assert np.ptp(trace["x_meas"][last_sent + N + 110 :]) < 0.1, "it stands"
 
 
-def test_ctrl_c_reaches_both_sides(start: Start, tmp_path: Path) -> None:
-    """The robot is our own gateway in real time, reached by UDP, so that it can tell its end."""
+@pytest.fixture
+def gateway_as_robot() -> Iterator[tuple[str, "Future[Outcome]"]]:
+    """Our own gateway in real time, as a robot on UDP: its address, and its outcome to come."""
+    parameters = RobotParameters(start=(-3.0, -3.0, 0.0))
+    config = GatewayConfig(0, 0, 6000, parameters.sample_time)
+
+    def drive() -> Outcome:
+        with Robot.open(3, parameters) as robot:
+            gateway = Gateway(FmuPlant(robot, parameters), config)
+            patience = Patience(silence=20.0, connect=20.0)
+            recorder, period = NoRecorder(), parameters.sample_time
+            served = serve_realtime(gateway, endpoint, recorder, patience, lambda _: None, period)
+            return served[0]
+
+    with open_endpoint("udpin://127.0.0.1:0") as endpoint, ThreadPoolExecutor(1) as thread:
+        yield endpoint.name.replace("udpin", "udpout"), thread.submit(drive)
+
+
+def test_ctrl_c_reaches_both_sides(
+    start: Start, tmp_path: Path, gateway_as_robot: tuple[str, "Future[Outcome]"]
+) -> None:
+    address, robot = gateway_as_robot
     lab = ("lab", "--duration", "600")
-    pace = ("-n", "0", "-m", "0", "--pace", "realtime")
-    robot = start(*LAGLAB, "gateway", *lab, *pace, "--endpoint", "udpin://127.0.0.1:0")
-    plant = ("--plant", f"udpout://127.0.0.1:{port_of(robot)}", "--out", "run")
+    plant = ("--plant", address, "--out", "run")
     gateway = start(*LAGLAB, "gateway", *lab, *plant, "--endpoint", "udpin://127.0.0.1:0")
     address = f"udpout://127.0.0.1:{port_of(gateway)}"
     station = start(*LAGLAB, "controller", *lab, "--endpoint", address)
     wait_until(tmp_path, is_driving)
     gateway.send_signal(signal.SIGINT)
-    for side in (gateway, station, robot):
-        ended(side, 130)
-    assert "interrupted at tick" in ended(robot, 130)
+    assert "interrupted at tick" in ended(gateway, 130)
+    ended(station, 130)
+    assert robot.result(timeout=5).reason is EndReason.INTERRUPTED
 
 
-def test_a_robot_that_never_speaks_is_named(start: Start, tmp_path: Path) -> None:
-    lab = ("lab", "--silence", "1")
-    plant = ("--plant", f"pty://{tmp_path}/port")
-    gateway = start(*LAGLAB, "gateway", *lab, *plant, "--endpoint", "udpin://127.0.0.1:0")
-    address = f"udpout://127.0.0.1:{port_of(gateway)}"
-    start(*LAGLAB, "controller", *lab, "--endpoint", address)
-    assert f"pty://{tmp_path}/port: the robot never spoke" in ended(gateway, 4)
-
-
-def test_a_run_in_one_process_cannot_have_a_robot_with_a_clock(
-    start: Start, tmp_path: Path
-) -> None:
-    run = start(*LAGLAB, "run", "lab", "--transport", "inline", "--plant", f"pty://{tmp_path}/port")
-    assert "take --transport udp or serial" in ended(run, 2)
+def test_a_robot_that_never_speaks_is_named(tmp_path: Path) -> None:
+    services = Services(standard_parameters(1, 1, Safety()), placeable=False)
+    relay = Relay(GatewayConfig(1, 1, 100, 0.01), services)
+    link = f"pty://{tmp_path}/port"
+    with (
+        open_endpoint(link) as robot,
+        open_endpoint("udpin://127.0.0.1:0") as endpoint,
+        open_endpoint(endpoint.name.replace("udpin", "udpout")) as station,
+    ):
+        station.send(Sender(STATION_SYSTEM, STATION_COMPONENT).frame(Heartbeat(0, 6, 8, 0, 4, 3)))
+        with pytest.raises(RobotSilentError, match="the robot never spoke") as silent:
+            serve_remote(
+                relay, robot, endpoint, NoRecorder(), Patience(silence=0.9), lambda _: None
+            )
+        assert link in str(silent.value)
+        heard = Receiver().receive(station.receive(0.1))
+        assert End(0, EndReason.FAILED) in [frame.message for frame in heard]

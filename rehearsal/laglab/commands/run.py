@@ -7,7 +7,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
-from laglab.errors import RunError
+from laglab.errors import RunError, ScenarioError
 from laglab.options import on_scenario
 from laglab.rehearse import Ending, Transport, rehearse
 from laglab.report import results_table, warnings, write_results
@@ -46,6 +46,8 @@ def run(
     plant: PlantOption = None,
 ) -> None:
     """Rehearse SCENARIO: robot and controller, the delayed link between them, and the verdict."""
+    if plant is not None and transport == "inline":
+        raise ScenarioError("--plant: a real robot does not wait: take --transport udp or serial")
     directory = out or fresh_directory(Path("runs"), scenario.name)
     with progress_bar() as bar:
         task = bar.add_task(scenario.name, total=scenario.last_tick)
