@@ -10,6 +10,9 @@ from laglab_gateway.recorder import Recorder
 from laglab_gateway.side import Outcome, RobotSide, from_station
 from laglab_gateway.watch import Watch
 
+TIMESYNC_TICKS = 10
+"""How often the station's clock is asked for."""
+
 END_TRIES = 5
 """A lost END only costs the station its silence timeout, so a few tries are enough."""
 
@@ -23,8 +26,12 @@ class Patience:
 
     repeat_after: float = 0.1
     silence: float = 3.0
-    robot_silence: float = 1.0
     connect: float | None = None
+
+    @property
+    def robot_silence(self) -> float:
+        """Of a real robot: shorter, so that the station hears of it before it gives us up."""
+        return self.silence / 3
 
 
 class Link(Protocol):
@@ -83,7 +90,13 @@ class Conversation:
     def catch_up(self) -> None:
         """While the station thinks: write down what was, look after everybody else."""
         self._recorder.flush()
-        self.look_around()
+        self._look_around()
+
+    def ask_time(self) -> None:
+        """Every so many ticks: how far is the station's clock away?"""
+        due = self._gateway.tick % TIMESYNC_TICKS == 0
+        if due and (question := self._gateway.ask_time()):
+            self.send(question)
 
     def listen(self, timeout: float) -> None:
         """Take what arrives, for at most `timeout` [s]."""
@@ -94,7 +107,7 @@ class Conversation:
             self._heard, self._heard_tick = self.now(), self._gateway.tick
         self._recorder.frames(self._gateway.time_us, [frame.raw for frame in frames])
         if not self._gateway.answered:
-            self.look_around()
+            self._look_around()
 
     def _silent(self, data: bytes) -> bool:
         """On a stream a silence ends an unfinished frame, as the datagram's end does on UDP."""
@@ -103,7 +116,7 @@ class Conversation:
             self._last_byte = now
         return now - self._last_byte >= STREAM_SILENCE
 
-    def look_around(self) -> None:
+    def _look_around(self) -> None:
         """Send what others than the loop asked for, and look after those who watch."""
         if notices := self._gateway.take_notices():
             self._watch.tell(notices)

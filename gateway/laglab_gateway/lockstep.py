@@ -46,5 +46,7 @@ def _exchange(gateway: Gateway, conversation: Conversation) -> None:
     conversation.send(gateway.open_tick())
     conversation.catch_up()
     while not conversation.listen_for(lambda: gateway.answered):
+        if gateway.station_end is not None:
+            return  # it has ended the run, and will not answer any more
         conversation.check_silence()
         conversation.send(gateway.repeat_tick())

@@ -17,9 +17,6 @@ from laglab_gateway.side import Outcome
 from laglab_gateway.watch import Watch
 from laglab_protocol import EndReason
 
-TIMESYNC_TICKS = 10
-"""How often the station's clock is asked for."""
-
 LONGEST_WAIT = 0.04
 """[s] Longer waits are left to a kernel timer that is too coarse for a deadline."""
 
@@ -84,8 +81,7 @@ def serve_realtime(
             conversation.send(gateway.open_tick())
             gateway.settle()
             conversation.catch_up()
-            if gateway.tick % TIMESYNC_TICKS == 0:
-                conversation.send(gateway.ask_time())
+            conversation.ask_time()
             progress(gateway.tick)
             conversation.check_silence()
             answered = _listen_until(deadline + period, gateway, conversation)

@@ -84,10 +84,11 @@ def serve_remote(
     station: Endpoint,
     recorder: Recorder,
     patience: Patience,
-    watch: Watch,
     progress: Callable[[int], None],
+    watch: Watch | None = None,
 ) -> Outcome:
     """Relay between robot and station to the run's last tick; `progress` is told of each.
+    Those who `watch` are looked after meanwhile.
 
     However it ends, both sides are told, the robot first.
 
@@ -135,3 +136,4 @@ def _relay_ticks(
         conversation.check_silence()
         conversation.send(relay.open_tick())
         conversation.catch_up()
+        conversation.ask_time()

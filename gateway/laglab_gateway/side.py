@@ -128,6 +128,10 @@ class RobotSide(ABC):
         """Whether the station has said all it has to say on this tick."""
         return self._command is not None
 
+    @abstractmethod
+    def open_tick(self) -> list[bytes]:
+        """The frames that begin this tick for the station."""
+
     def _tell(self, samples: Iterable[Measurement]) -> list[bytes]:
         """Put samples on the link; the frames: each z that has come across, and the tick."""
         for sample in samples:
@@ -231,18 +235,18 @@ class RobotSide(ABC):
     def close_tick(self) -> TraceRow:
         """Say what happened at this tick, and whether the run ends with it (`outcome`)."""
 
-    def _close(self) -> None:
-        self.audit.unanswered += not self.answered
-        self.outcome = self._ending or self.outcome
-
     @property
     def _ending(self) -> Outcome | None:
-        """How the run ends with this tick; None when it goes on."""
+        """How the run ends at this tick; None when it goes on."""
         if self.station_end is not None:
             return Outcome(reason_of(self.station_end), self.tick)
         if self.elapsed >= self._config.last_tick:
             return Outcome(EndReason.COMPLETED, self.tick)
         return None
+
+    def _close(self) -> None:
+        self.audit.unanswered += not self.answered
+        self.outcome = self.outcome or self._ending
 
     def _row(
         self,

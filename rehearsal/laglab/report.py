@@ -12,7 +12,7 @@ from laglab.rehearse import Ending, Transport
 from laglab.scenario import Scenario
 from laglab.sides import robot_model
 from laglab.summary import deviation, loop_estimates, rms_error, summarise, write_summary
-from laglab_controller import ESTIMATORS, constant_delay, replay
+from laglab_controller import ESTIMATORS, Replay, constant_delay, replay
 from laglab_gateway import Trace
 
 
@@ -38,13 +38,13 @@ def write_results(
 def compare(scenario: Scenario, trace: Trace) -> dict[str, NDArray[np.float64]]:
     """Deviations of the estimator in the loop, and of each in ``compare`` on the same record."""
     estimates = {scenario.estimator: loop_estimates(trace)} | {
-        name: reestimate(scenario, name, trace) for name in scenario.compare
+        name: reestimate(scenario, name, trace).estimates for name in scenario.compare
     }
     return {name: deviation(trace, values) for name, values in estimates.items()}
 
 
-def reestimate(scenario: Scenario, name: str, trace: Trace) -> NDArray[np.float64]:
-    """What the named estimator makes of a record, shape (ticks + 1, 3)."""
+def reestimate(scenario: Scenario, name: str, trace: Trace) -> Replay:
+    """What the named estimator makes of a record."""
     estimator = ESTIMATORS[name].make(robot_model(scenario))
     inputs = np.stack([trace["v"], trace["omega"]], axis=1)[:-1]
     measurements = np.stack([trace[f"{axis}_meas"] for axis in ("x", "y", "theta")], axis=1)
@@ -54,7 +54,7 @@ def reestimate(scenario: Scenario, name: str, trace: Trace) -> NDArray[np.float6
         scenario.initial_covariance * np.eye(3),
         inputs,
         constant_delay(measurements, scenario.measurement_delay),
-    ).estimates
+    )
 
 
 def results_table(summary: dict[str, Any]) -> Table:
@@ -64,13 +64,14 @@ def results_table(summary: dict[str, Any]) -> Table:
     final = summary["final"]
     estimated = summary.get("compare", {summary["estimator"]: summary["rms_error"]})
     factor = summary["real_time_factor"]
+    seen = " (measured)" if summary["pose"] == "measured" else ""
     rows = {
         "scenario": f"{summary['scenario']} (seed {summary['seed']}, {summary['transport']})",
         "estimator": summary["estimator"],
         "delays n, m": delays,
-        "pose error at the end": f"ρ {final['rho']:.3g} m, θ {final['theta_error']:.3g} rad",
+        f"pose error at the end{seen}": f"ρ {final['rho']:.3g} m, θ {final['theta_error']:.3g} rad",
         "speeds at the end": f"v {final['v']:.3g} m/s, ω {final['omega']:.3g} rad/s",
-        **{f"RMS error of {name}": _errors(errors) for name, errors in estimated.items()},
+        **{f"RMS error of {name}{seen}": _errors(errors) for name, errors in estimated.items()},
         **_link_rows(summary.get("link", {})),
         **_timing_row(summary.get("timing")),
         "speed": f"{summary['ticks']} ticks in {summary['wall_time_s']:.2f} s"

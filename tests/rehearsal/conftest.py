@@ -1,6 +1,7 @@
 """Runs of the real command, in a process of its own or in this one."""
 
 import json
+import re
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -66,3 +67,17 @@ def start(tmp_path: Path) -> Iterator[Start]:
     for process in running:
         process.kill()
         process.communicate()
+
+
+@pytest.fixture
+def listening_port() -> Callable[["subprocess.Popen[str]"], str]:
+    """The UDP port on loopback that a gateway in the background says it listens on."""
+
+    def read(gateway: "subprocess.Popen[str]") -> str:
+        assert gateway.stderr is not None
+        line = gateway.stderr.readline()
+        found = re.search(r"listening on udpin://127\.0\.0\.1:(\d+)", line)
+        assert found, line
+        return found[1]
+
+    return read

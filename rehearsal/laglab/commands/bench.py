@@ -1,22 +1,21 @@
-"""``laglab bench``."""
+"""`laglab bench`: ratios, measured side by side in one run."""
 
 from typing import Annotated
 
 import typer
 from rich.console import Console
+from rich.table import Table
 
+from laglab.bench import filter as filter_bench
 from laglab.bench import loop as loop_bench
+from laglab_fmu import bench as fmu_bench
+from laglab_protocol import bench as codec_bench
 
 app = typer.Typer(help="Ratios, measured side by side in one run.", no_args_is_help=True)
 
 
-@app.callback()
-def bench() -> None:
-    """Ratios, measured side by side in one run."""
-
-
-@app.command()
-def loop(
+@app.command("loop")
+def bench_loop(
     rounds: Annotated[
         int, typer.Option(min=1, help="Each way is measured so many times; medians are shown.")
     ] = 5,
@@ -31,3 +30,60 @@ def loop(
         timing = loop_bench.measure_lateness(realtime)
     console.print(loop_bench.times_table(measured), crop=False)
     console.print(loop_bench.lateness_line(timing), highlight=False, soft_wrap=True)
+
+
+@app.command("filter")
+def bench_filter(
+    ticks: Annotated[int, typer.Option(min=10, help="Length of the drive.")] = 1000,
+) -> None:
+    """What a tick of each filter costs at m + n = 4, 40 and 400, beside filterpy's EKF."""
+    console = Console()
+    alone = _timed(console, "filters", filter_bench.filters(), (4, 40, 400), ticks)
+    has_filterpy = any(row.name == filter_bench.FILTERPY for row in alone)
+    yardstick = filter_bench.FILTERPY if has_filterpy else "ekf"
+    console.print(filter_bench.timings_table("the filter alone", alone, yardstick))
+    whole = _timed(console, "controllers", filter_bench.controllers(), (2, 20, 200), ticks)
+    title = "filter, extrapolation over n = m ticks, law"
+    console.print(filter_bench.timings_table(title, whole, "ekf"))
+    if not has_filterpy:
+        console.print("filterpy is not installed: `pip install filterpy` adds its EKF")
+
+
+@app.command("codec")
+def bench_codec(
+    rounds: Annotated[int, typer.Option(min=1, help="Blocks of messages of each codec.")] = 100,
+) -> None:
+    """Encode and decode, signed and not: our codec, pymavlink's, and mavgen's C."""
+    with Console(stderr=True).status("encoding and decoding"):
+        rows = codec_bench.bench_codec(rounds)
+    table = Table("", "ours, µs", "pymavlink, µs", "times faster", "C, µs", title="one message")
+    for row in rows:
+        c = f"{row.c_us:.2f}" if row.c_us else ""
+        ratio = f"{row.times_faster:.1f}"
+        table.add_row(row.what, f"{row.ours_us:.2f}", f"{row.pymavlink_us:.2f}", ratio, c)
+    Console().print(table)
+
+
+@app.command("fmu")
+def bench_fmu(
+    robots: Annotated[int, typer.Option(min=1, help="Size of the fleet.")] = 1000,
+    ticks: Annotated[int, typer.Option(min=100, help="Steps of a single robot.")] = 3000,
+) -> None:
+    """One step of the FMU: ours, FMPy's two ways, the fleet per robot, a plain C loop."""
+    with Console(stderr=True).status("stepping"):
+        rows = fmu_bench.bench(robots, ticks)
+    table = Table("way", "µs a robot-step", f"× {fmu_bench.PLAIN}", title="one step of the robot")
+    for row in rows:
+        table.add_row(row.name, f"{1e6 * row.seconds:.3f}", f"{row.ratio:.1f}")
+    Console().print(table)
+
+
+def _timed(
+    console: Console,
+    what: str,
+    contenders: dict[str, filter_bench.Turn],
+    delays: tuple[int, ...],
+    ticks: int,
+) -> list[filter_bench.Timing]:
+    with console.status(f"timing {what}"):
+        return list(filter_bench.timings(contenders, delays, ticks))

@@ -1,0 +1,57 @@
+"""``laglab consistency``."""
+
+import os
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from laglab.commands.run import progress_bar
+from laglab.consistency import samples, verdict
+from laglab.consistency_report import consistency_table, draw_consistency
+from laglab.errors import ScenarioError
+from laglab.figure import save
+from laglab.options import on_scenario
+from laglab.scenario import Scenario
+from laglab_controller import ESTIMATORS
+
+JUDGED = ("ekf", "popf", "popf-exact", "delayed-ekf")
+TABLE_WIDTH = 100
+"""Columns that the table takes; a narrower terminal wraps it, but shows it whole."""
+
+
+@on_scenario
+def consistency(
+    scenario: Scenario,
+    seeds: Annotated[int, typer.Option(min=2, help="Runs, each with noise of its own.")] = 50,
+    judged: Annotated[
+        list[str] | None, typer.Option("--judge", metavar="NAME", help="A filter to judge.")
+    ] = None,
+    workers: Annotated[int, typer.Option(min=0, help="Processes; 0: one a core.")] = 0,
+    out: Annotated[Path, typer.Option("--out", metavar="FILE", help="The picture.")] = Path(
+        "consistency.png"
+    ),
+) -> None:
+    """Compare the covariance that each filter claims with the errors it makes, over many seeds.
+
+    The loop runs with the scenario's filter; all filters are judged on its records.
+    """
+    names = [_known(name) for name in judged or JUDGED]
+    with progress_bar() as bar:
+        runs = samples(scenario, names, seeds, workers or os.cpu_count() or 1)
+        got = list(bar.track(runs, total=seeds, description="seeds"))
+    m = scenario.measurement_delay
+    verdicts = [verdict(name, [sample[name] for sample in got], m) for name in names]
+    console = Console()
+    console.width = max(console.width, TABLE_WIDTH)
+    console.print(consistency_table(scenario, verdicts, seeds))
+    save(draw_consistency(scenario, verdicts), out)
+    console.print(f"picture in {out}", highlight=False)
+
+
+def _known(name: str) -> str:
+    if name not in ESTIMATORS or not ESTIMATORS[name].predicts:
+        known = ", ".join(name for name, kind in ESTIMATORS.items() if kind.predicts)
+        raise ScenarioError(f"--judge: {name!r} is not one of {known}")
+    return name

@@ -1,0 +1,73 @@
+"""The claimed covariances against true errors."""
+
+import math
+
+import numpy as np
+import pytest
+
+from laglab.consistency import Sample, chi_square_bounds, samples, verdict
+from laglab.scenario import load
+
+
+@pytest.mark.parametrize(
+    ("seeds", "low", "high"),
+    # Quantiles 2.5 % and 97.5 % of chi-square with 3 N degrees, from printed tables, over N.
+    [(10, 16.791 / 10, 46.979 / 10), (30, 65.647 / 30, 118.136 / 30)],
+)
+def test_bounds_are_those_of_the_tables(seeds, low, high):
+    assert chi_square_bounds(seeds) == pytest.approx((low, high), rel=0.01)
+
+
+def made_up(seed, scale):
+    """A filter that claims P = I while its errors have variance scale^2."""
+    error = np.random.default_rng(seed).normal(size=(50, 3)) * scale
+    squared = (error**2).sum(axis=1)
+    return Sample(error, np.ones((50, 3)), squared, squared)
+
+
+@pytest.mark.parametrize(("scale", "consistent"), [(1.0, True), (1.3, False), (0.7, False)])
+def test_too_sure_and_not_sure_enough_are_told_apart(scale, consistent):
+    judged = verdict("made up", [made_up(seed, scale) for seed in range(100)], 0)
+    assert judged.consistent is consistent
+    assert judged.mean(judged.nees) == pytest.approx(3 * scale**2, rel=0.05)
+    assert np.sqrt(np.mean(judged.true**2)) == pytest.approx(scale, rel=0.02)
+    if consistent:
+        assert judged.inside(judged.nees) > 0.85
+
+
+def test_a_diverged_seed_and_a_lost_covariance_are_counted():
+    whole, cut = made_up(1, 1.0), made_up(2, 1.0)
+    short = Sample(*(values[:20] for values in cut))
+    indefinite = whole._replace(nees=np.where(np.arange(50) < 25, whole.nees, math.nan))
+    judged = verdict("made up", [whole, short, indefinite], 0)
+    assert judged.diverged == 1
+    assert judged.indefinite == pytest.approx(25 / 120)
+    assert not judged.consistent
+
+
+@pytest.mark.slow
+def test_delayed_ekf_is_consistent_and_popf_and_ekf_are_too_sure():
+    scenario = load("lab", {"duration": 4.0})
+    names = ("ekf", "popf", "popf-exact", "delayed-ekf")
+    got = list(samples(scenario, names, seeds=40, workers=2))
+    verdicts = {name: verdict(name, [one[name] for one in got], 20) for name in names}
+    delayed = verdicts["delayed-ekf"]
+    assert delayed.consistent
+    assert delayed.inside(delayed.nis) > 0.9
+    for name in ("popf", "ekf"):
+        assert verdicts[name].mean(verdicts[name].nees) > delayed.bounds[1]
+        assert np.all(verdicts[name].claimed[200] < verdicts[name].true[200])
+
+
+def test_the_command_leaves_table_and_picture(laglab, tmp_path):
+    ended = laglab("consistency", "lab", "--duration", "0.5", "--seeds", "3", "--workers", "1")
+    assert ended.returncode == 0, ended.stderr
+    for name in ("ekf", "popf", "popf-exact", "delayed-ekf"):
+        assert name in ended.stdout
+    assert (tmp_path / "consistency.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_filter_that_claims_nothing_cannot_be_judged(laglab):
+    ended = laglab("consistency", "lab", "--judge", "raw")
+    assert (ended.returncode, ended.stdout) == (2, "")
+    assert "--judge: 'raw' is not one of ekf, popf" in ended.stderr
