@@ -89,10 +89,8 @@ def test_two_hosts_find_each_other(answers: Answers) -> None:
 def test_the_measured_delay_is_what_netem_was_told(answers: Answers) -> None:
     told = (0.015, 0.025)
     for name, device, delay in zip(NAMES, DEVICES, told, strict=True):
-        milliseconds = f"{1e3 * delay:g}ms"
-        needed(
-            "tc", "-n", name, "qdisc", "add", "dev", device, "root", "netem", "delay", milliseconds
-        )
+        netem = ("root", "netem", "delay", f"{1e3 * delay:g}ms")
+        needed("tc", "-n", name, "qdisc", "add", "dev", device, *netem)
     measured = answers()
     assert len(measured) >= 25
     assert sum(told) < median(measured) < sum(told) + 0.015
