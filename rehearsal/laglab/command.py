@@ -4,7 +4,7 @@ import sys
 
 import typer
 
-from laglab.commands import bench, compare, consistency, errata, fmu, run, scenarios, sides
+from laglab.commands import bench, compare, consistency, errata, fmu, replay, run, scenarios, sides
 from laglab.errors import LaglabError, RunError, ScenarioError
 from laglab.processes import SIDE_ERRORS
 from laglab_controller import StationError
@@ -19,6 +19,7 @@ app = typer.Typer(
     add_completion=False,
 )
 app.command("run")(run.run)
+app.command("replay")(replay.replay)
 app.command("scenarios")(scenarios.scenarios)
 app.command("compare")(compare.compare)
 app.command("consistency")(consistency.consistency)
