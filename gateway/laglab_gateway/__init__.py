@@ -2,9 +2,15 @@
 
 from laglab_gateway.channel import Channel
 from laglab_gateway.conversation import Link, Patience
-from laglab_gateway.core import Gateway, GatewayConfig, Outcome
+from laglab_gateway.core import Gateway
 from laglab_gateway.drive import Safety
-from laglab_gateway.errors import GatewayError, StationSilentError, TimelineError, TraceError
+from laglab_gateway.errors import (
+    GatewayError,
+    RobotSilentError,
+    StationSilentError,
+    TimelineError,
+    TraceError,
+)
 from laglab_gateway.fates import Fates, RandomFates
 from laglab_gateway.impairments import IDEAL, Burst, ExtraDelay, Impairments
 from laglab_gateway.linklog import RecordedFates, read_link_log
@@ -20,6 +26,8 @@ from laglab_gateway.recorder import (
     NoRecorder,
     Recorder,
 )
+from laglab_gateway.relay import Relay
+from laglab_gateway.remote import serve_remote
 from laglab_gateway.services import (
     Parameter,
     Parameters,
@@ -27,6 +35,7 @@ from laglab_gateway.services import (
     Timesyncing,
     standard_parameters,
 )
+from laglab_gateway.side import GatewayConfig, Outcome
 from laglab_gateway.timeline import Direction, Event
 from laglab_gateway.trace import Trace, TraceRow, read_trace
 from laglab_gateway.watch import Watch, Watcher
@@ -60,6 +69,8 @@ __all__ = [
     "RandomFates",
     "RecordedFates",
     "Recorder",
+    "Relay",
+    "RobotSilentError",
     "Safety",
     "Services",
     "StationSilentError",
@@ -74,5 +85,6 @@ __all__ = [
     "read_trace",
     "serve_lockstep",
     "serve_realtime",
+    "serve_remote",
     "standard_parameters",
 ]

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from time import monotonic
 from typing import Protocol
 
-from laglab_gateway.core import Gateway, Outcome, from_station
 from laglab_gateway.errors import StationSilentError
 from laglab_gateway.recorder import Recorder
+from laglab_gateway.side import Outcome, RobotSide, from_station
 from laglab_gateway.watch import Watch
 
 END_TRIES = 5
@@ -20,6 +20,7 @@ class Patience:
 
     repeat_after: float = 0.1
     silence: float = 3.0
+    robot_silence: float = 1.0
     connect: float | None = None
 
 
@@ -45,7 +46,7 @@ class Conversation:
 
     def __init__(
         self,
-        gateway: Gateway,
+        gateway: RobotSide,
         endpoint: Link,
         recorder: Recorder,
         patience: Patience,
@@ -65,14 +66,25 @@ class Conversation:
         started = self.now()
         while not self._gateway.connected:
             self.listen(self._patience.repeat_after)
+            self._recorder.flush()
             waited = self.now() - started
             if self._patience.connect is not None and waited > self._patience.connect:
                 raise StationSilentError(None, waited)
 
     def send(self, frames: list[bytes]) -> None:
         """Send whole frames as one datagram."""
-        self._recorder.frames(self._gateway.time_us, frames)
         self._endpoint.send(b"".join(frames))
+        self._recorder.frames(self._gateway.time_us, frames)
+
+    def send_tick(self) -> None:
+        """Open the tick, and use the time in which the station thinks."""
+        self.send(self._gateway.open_tick())
+        self._catch_up()
+
+    def _catch_up(self) -> None:
+        """Write down what was before, look after everybody else."""
+        self._recorder.flush()
+        self._look_around()
 
     def listen(self, timeout: float) -> None:
         """Take what arrives, for at most `timeout` [s]."""
@@ -84,9 +96,9 @@ class Conversation:
             self._heard, self._heard_tick = self.now(), self._gateway.tick
         self._recorder.frames(self._gateway.time_us, [frame.raw for frame in frames])
         if not self._gateway.answered:
-            self.look_around()
+            self._look_around()
 
-    def look_around(self) -> None:
+    def _look_around(self) -> None:
         """Send what others than the loop asked for, and look after those who watch."""
         if notices := self._gateway.take_notices():
             self._watch.tell(notices)
@@ -110,16 +122,16 @@ class Conversation:
             raise StationSilentError(self._heard_tick, silence)
 
     def finish_tick(self) -> int:
-        """Close the tick, record it, look after everybody else; returns the tick."""
+        """Close the tick and record it; returns the tick."""
         row = self._gateway.close_tick()
         self._recorder.row(row)
         if rows := self._gateway.take_link_rows():
             self._recorder.link(rows)
-        self.look_around()
         return row.tick
 
     def say_goodbye(self, outcome: Outcome) -> None:
         """Tell the station, and give it a few chances to say that it heard."""
+        self._catch_up()
         for _ in range(END_TRIES):
             self.send([self._gateway.end(outcome.reason)])
             if self.listen_for(lambda: self._gateway.station_end is not None):

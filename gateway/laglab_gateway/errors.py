@@ -16,6 +16,17 @@ class StationSilentError(GatewayError):
         )
 
 
+class RobotSilentError(GatewayError):
+    """A real robot, which has a clock of its own, stopped ticking (or never began)."""
+
+    def __init__(self, link: str, tick: int | None, seconds: float) -> None:
+        since = "never spoke" if tick is None else f"has been silent since its tick {tick}"
+        super().__init__(
+            f"{link}: the robot {since} ({seconds:.1f} s): is it switched on, on this link, and "
+            "speaks it the laglab dialect at this baud?"
+        )
+
+
 class TraceError(GatewayError):
     """A trace file cannot be written or is not a trace."""
 

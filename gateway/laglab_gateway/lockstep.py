@@ -3,8 +3,9 @@
 from collections.abc import Callable
 
 from laglab_gateway.conversation import Conversation, Link, Patience
-from laglab_gateway.core import Gateway, Outcome
+from laglab_gateway.core import Gateway
 from laglab_gateway.recorder import Recorder
+from laglab_gateway.side import Outcome
 from laglab_gateway.watch import Watch
 from laglab_protocol import EndReason
 
@@ -42,7 +43,7 @@ def serve_lockstep(
 
 def _exchange(gateway: Gateway, conversation: Conversation) -> None:
     """Send this tick until it is answered; the station answers a repeat with the same."""
-    conversation.send(gateway.open_tick())
+    conversation.send_tick()
     while not conversation.listen_for(lambda: gateway.answered):
         conversation.check_silence()
         conversation.send(gateway.repeat_tick())

@@ -28,16 +28,17 @@ class FmuPlant:
         self._parameters = parameters
         self._wheel_radius = parameters.wheel_radius
         self._half_track = parameters.track / 2
+        self._reading = robot.read()
 
     def read(self) -> Reading:
         """The FMU's outputs at this tick."""
-        return self._robot.read()
+        return self._reading
 
     def step(self, v: float, omega: float) -> None:
         """Equation (1) solved for the wheel speeds, then one tick of (3)."""
         omega_left = (v - omega * self._half_track) / self._wheel_radius
         omega_right = (v + omega * self._half_track) / self._wheel_radius
-        self._robot.step(omega_left, omega_right)
+        self._reading = self._robot.step(omega_left, omega_right)
 
     def place(self, x: float, y: float, theta: float) -> None:
         """Start the FMU again from there; its noise starts again too."""
@@ -46,3 +47,4 @@ class FmuPlant:
             there if math.isnan(each) else each for each, there in zip(asked, start, strict=True)
         )
         self._robot.reset(replace(self._parameters, start=(x, y, theta)))
+        self._reading = self._robot.read()

@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from laglab_gateway.conversation import Conversation, Link, Patience
-from laglab_gateway.core import Gateway, Outcome
+from laglab_gateway.core import Gateway
 from laglab_gateway.recorder import Recorder, TimingRow
+from laglab_gateway.side import Outcome
 from laglab_gateway.watch import Watch
 from laglab_protocol import EndReason
 
@@ -77,7 +78,7 @@ def serve_realtime(
             late = now() - deadline
             if lateness.add(late):
                 gateway.announce(f"cannot keep up: tick {gateway.tick} is {late:.3f} s late")
-            conversation.send(gateway.open_tick())
+            conversation.send_tick()
             gateway.settle()
             if gateway.tick % TIMESYNC_TICKS == 0:
                 conversation.send(gateway.ask_time())

@@ -1,19 +1,17 @@
 """The flight recorder: what happened, on disk, whole up to the last tick."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from io import FileIO
 from pathlib import Path
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from laglab_gateway.errors import TraceError
-from laglab_gateway.linklog import LINK_HEADER, LinkRow
-from laglab_gateway.trace import HEADER, TraceRow, format_row
+from laglab_gateway.linklog import LinkRow
+from laglab_gateway.trace import TraceRow, format_row
 from laglab_protocol import tlog_record
 
 TRACE_FILE = "trace.csv"
 TLOG_FILE = "robot.tlog"
-
-
 LINK_FILE = "link.csv"
 TIMING_FILE = "timing.csv"
 
@@ -41,6 +39,9 @@ class Recorder(Protocol):
     def timing(self, row: TimingRow) -> None:
         """One tick began, on the wall clock."""
 
+    def flush(self) -> None:
+        """Nobody waits for this side now: a good moment to write."""
+
     def close(self) -> None:
         """The run is over."""
 
@@ -60,59 +61,88 @@ class NoRecorder:
     def timing(self, row: TimingRow) -> None:
         """Forget it."""
 
+    def flush(self) -> None:
+        """There is nothing to write."""
+
     def close(self) -> None:
         """Nothing is open."""
+
+
+class _File:
+    """A file, and the records that go there with the next flush."""
+
+    def __init__(self, path: Path, header: bytes, encode: Callable[[Any], bytes]) -> None:
+        self.waiting: list[Any] = []
+        self._encode = encode
+        try:
+            self._file = FileIO(path, "w")
+        except OSError as error:
+            raise TraceError(f"cannot record {path}: {error.strerror}") from error
+        self._file.write(header)
+
+    def flush(self) -> None:
+        if self.waiting:
+            waiting, self.waiting = self.waiting, []
+            self._file.write(b"".join(map(self._encode, waiting)))
+
+    def close(self) -> None:
+        self.flush()
+        self._file.close()
+
+
+def _csv(path: Path, row: type[tuple[Any, ...]]) -> _File:
+    header = ",".join(row._fields) + "\n"  # type: ignore[attr-defined]
+    return _File(path, header.encode(), lambda values: format_row(values).encode())
 
 
 class FileRecorder:
     """Writes `trace.csv` and `robot.tlog` into a directory; `link.csv` and `timing.csv` if any.
 
-    Unbuffered, and each row or batch in one write: a process killed at any moment leaves whole
-    rows and whole records.
+    Kept until `flush`, then all of a file's records go there in one unbuffered write: a process
+    killed at any moment leaves whole rows and whole records, up to the last flush.
     """
 
     def __init__(self, directory: Path) -> None:
         """Raises: TraceError, when the directory cannot be written."""
         self._directory = directory
-        self._files: dict[str, FileIO] = {}
         try:
             directory.mkdir(parents=True, exist_ok=True)
             for stale in (LINK_FILE, TIMING_FILE):
                 (directory / stale).unlink(missing_ok=True)
         except OSError as error:
             raise TraceError(f"cannot record into {directory}: {error.strerror}") from error
-        self._trace = self._open(TRACE_FILE, HEADER)
-        self._tlog = self._open(TLOG_FILE)
-
-    def _open(self, name: str, header: str = "") -> FileIO:
-        if name not in self._files:
-            try:
-                self._files[name] = FileIO(self._directory / name, "w")
-            except OSError as error:
-                raise TraceError(f"cannot record {name}: {error.strerror}") from error
-            self._files[name].write(header.encode())
-        return self._files[name]
+        self._trace = _csv(directory / TRACE_FILE, TraceRow)
+        self._tlog = _File(directory / TLOG_FILE, b"", lambda record: tlog_record(*record))
+        self._link: _File | None = None
+        self._timing: _File | None = None
 
     def row(self, row: TraceRow) -> None:
-        """Append one row to the trace."""
-        self._trace.write(format_row(row).encode())
+        """One more row of the trace."""
+        self._trace.waiting.append(row)
 
     def frames(self, time_us: int, frames: Iterable[bytes]) -> None:
-        """Append the frames to the telemetry log."""
-        if records := b"".join(tlog_record(time_us, frame) for frame in frames):
-            self._tlog.write(records)
+        """More frames of the telemetry log."""
+        self._tlog.waiting += [(time_us, frame) for frame in frames]
 
     def link(self, rows: Iterable[LinkRow]) -> None:
-        """Append the fates of frames to the link log."""
-        text = "".join(format_row(row) for row in rows)
-        self._open(LINK_FILE, LINK_HEADER).write(text.encode())
+        """More rows of the link log."""
+        self._link = self._link or _csv(self._directory / LINK_FILE, LinkRow)
+        self._link.waiting += rows
 
     def timing(self, row: TimingRow) -> None:
-        """Append one tick's lateness."""
-        header = ",".join(TimingRow._fields) + "\n"
-        self._open(TIMING_FILE, header).write(format_row(row).encode())
+        """One tick's lateness."""
+        self._timing = self._timing or _csv(self._directory / TIMING_FILE, TimingRow)
+        self._timing.waiting.append(row)
+
+    def _files(self) -> list[_File]:
+        return [each for each in (self._trace, self._tlog, self._link, self._timing) if each]
+
+    def flush(self) -> None:
+        """Write all that has been kept."""
+        for file in self._files():
+            file.flush()
 
     def close(self) -> None:
-        """Close all files."""
-        for file in self._files.values():
+        """Write the rest, and close all files."""
+        for file in self._files():
             file.close()

@@ -11,24 +11,27 @@ from laglab_gateway.errors import TraceError
 
 
 class TraceRow(NamedTuple):
-    """Tick k: pose, sample z_k, estimate of k (None without a filter), u_k as sent (None when it
-    had not come by the end of the tick), u in force."""
+    """Tick k: pose (None of a real robot), sample z_k, estimate of k (None without a filter), u_k
+    as sent (None when it had not come by the end of the tick), u in force.
+
+    Of a real robot, sample and u in force are what it reports, None when it does not.
+    """
 
     tick: int
     time: float
-    x: float
-    y: float
-    theta: float
-    x_meas: float
-    y_meas: float
-    theta_meas: float
+    x: float | None
+    y: float | None
+    theta: float | None
+    x_meas: float | None
+    y_meas: float | None
+    theta_meas: float | None
     x_est: float | None
     y_est: float | None
     theta_est: float | None
     v_sent: float | None
     omega_sent: float | None
-    v: float
-    omega: float
+    v: float | None
+    omega: float | None
 
 
 Trace: TypeAlias = dict[str, NDArray[np.float64]]
@@ -39,13 +42,8 @@ HEADER = ",".join(TraceRow._fields) + "\n"
 
 def format_row(row: tuple[int | float | str | None, ...]) -> str:
     """`repr` of a float is the shortest text that reads back to the same double."""
-    return ",".join(map(_format_cell, row)) + "\n"
-
-
-def _format_cell(cell: float | str | None) -> str:
-    if cell is None:
-        return ""
-    return cell if isinstance(cell, str) else repr(cell)
+    cells = ["" if cell is None else cell if isinstance(cell, str) else repr(cell) for cell in row]
+    return ",".join(cells) + "\n"
 
 
 def read_trace(path: Path) -> Trace:

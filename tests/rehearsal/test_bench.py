@@ -1,6 +1,6 @@
 """``laglab bench filter``: every contender does the work that is timed."""
 
-from laglab.filter_bench import FILTERPY, OURS, controllers, filters, make_drive, timings
+from laglab.bench.filter import FILTERPY, OURS, controllers, filters, make_drive, timings
 
 
 def test_every_contender_is_timed_at_every_delay():

@@ -87,6 +87,7 @@ def test_a_bare_clone_installs_and_runs(tmp_path: Path) -> None:
     installed = tmp_path / ".venv" / "bin" / "laglab"
     subprocess.run([installed, "fmu", "build", "--out", "built"], cwd=tmp_path, check=True)
     assert sorted(path.name for path in (tmp_path / "built").iterdir()) == [
+        "Fleet3.fmu",
         "Robot2.fmu",
         "Robot3.fmu",
     ]

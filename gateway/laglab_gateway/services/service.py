@@ -36,10 +36,14 @@ class Services:
     """The rover that ground stations see. Clocks are compared only if there is a `timesync`."""
 
     def __init__(
-        self, parameters: Parameters, armed: bool = True, timesync: Timesyncing | None = None
+        self,
+        parameters: Parameters,
+        armed: bool = True,
+        timesync: Timesyncing | None = None,
+        placeable: bool = True,
     ) -> None:
         self.parameters = parameters
-        self.arming = Arming(armed)
+        self.arming = Arming(armed, placeable)
         self.timesync = timesync
         self._state = RobotState(0, 0.0, 0.0, 0.0, 0.0, 0.0)
         self._commands = Commands(self.arming, self._report, self._set_interval)

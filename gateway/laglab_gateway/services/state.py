@@ -20,10 +20,12 @@ Pose = tuple[float, float, float]
 
 
 class Arming:
-    """Whether the robot may move. An emergency stop latches until the pose is reset."""
+    """Whether the robot may move. An emergency stop latches until the pose is reset; where the
+    robot is real, and so not `placeable`, it latches for good."""
 
-    def __init__(self, armed: bool) -> None:
+    def __init__(self, armed: bool, placeable: bool = True) -> None:
         self.armed = armed
+        self._placeable = placeable
         self.stopped = False
         self.reset_to: Pose | None = None
 
@@ -43,7 +45,7 @@ class Arming:
 
     def reset(self, pose: Pose) -> bool:
         """Ask for the robot to be put at `pose`; False while it may move."""
-        if self.armed or any(math.isinf(each) for each in pose):
+        if self.armed or not self._placeable or any(math.isinf(each) for each in pose):
             return False
         self.stopped = False
         self.reset_to = pose

@@ -1,26 +1,34 @@
-"""``laglab bench``."""
+"""`laglab bench`: ratios, measured side by side in one run."""
 
 from typing import Annotated
 
 import typer
 from rich.console import Console
+from rich.table import Table
 
-from laglab.filter_bench import (
-    FILTERPY,
-    Timing,
-    Turn,
-    controllers,
-    filters,
-    timings,
-    timings_table,
-)
+from laglab.bench import filter as filter_bench
+from laglab.bench import loop as loop_bench
+from laglab_fmu import bench as fmu_bench
 
-app = typer.Typer(help="Measure speeds on this machine.", no_args_is_help=True)
+app = typer.Typer(help="Ratios, measured side by side in one run.", no_args_is_help=True)
 
 
-@app.callback()
-def bench() -> None:
-    """Keep the name of the one benchmark a word of its own."""
+@app.command("loop")
+def bench_loop(
+    rounds: Annotated[
+        int, typer.Option(min=1, help="Each way is measured so many times; medians are shown.")
+    ] = 5,
+    ticks: Annotated[int, typer.Option(min=100, help="Ticks of each measurement.")] = 2000,
+    realtime: Annotated[float, typer.Option(min=1.0, help="Seconds of real-time pacing.")] = 5.0,
+) -> None:
+    """The lock-step loop over UDP and a pty, against a bare echo and against one by hand."""
+    console = Console()
+    with Console(stderr=True).status("") as status:
+        measured = loop_bench.measure(rounds, ticks, status.update)
+        status.update("real time")
+        timing = loop_bench.measure_lateness(realtime)
+    console.print(loop_bench.times_table(measured), crop=False)
+    console.print(loop_bench.lateness_line(timing), highlight=False, soft_wrap=True)
 
 
 @app.command("filter")
@@ -29,17 +37,37 @@ def bench_filter(
 ) -> None:
     """What a tick of each filter costs at m + n = 4, 40 and 400, beside filterpy's EKF."""
     console = Console()
-    alone = _measured(console, "filters", filters(), (4, 40, 400), ticks)
-    yardstick = FILTERPY if any(row.name == FILTERPY for row in alone) else "ekf"
-    console.print(timings_table("the filter alone", alone, yardstick))
-    whole = _measured(console, "controllers", controllers(), (2, 20, 200), ticks)
-    console.print(timings_table("filter, extrapolation over n = m ticks, law", whole, "ekf"))
-    if yardstick == "ekf":
+    alone = _timed(console, "filters", filter_bench.filters(), (4, 40, 400), ticks)
+    has_filterpy = any(row.name == filter_bench.FILTERPY for row in alone)
+    yardstick = filter_bench.FILTERPY if has_filterpy else "ekf"
+    console.print(filter_bench.timings_table("the filter alone", alone, yardstick))
+    whole = _timed(console, "controllers", filter_bench.controllers(), (2, 20, 200), ticks)
+    title = "filter, extrapolation over n = m ticks, law"
+    console.print(filter_bench.timings_table(title, whole, "ekf"))
+    if not has_filterpy:
         console.print("filterpy is not installed: `pip install filterpy` adds its EKF")
 
 
-def _measured(
-    console: Console, what: str, contenders: dict[str, Turn], delays: tuple[int, ...], ticks: int
-) -> list[Timing]:
+@app.command("fmu")
+def bench_fmu(
+    robots: Annotated[int, typer.Option(min=1, help="Size of the fleet.")] = 1000,
+    ticks: Annotated[int, typer.Option(min=100, help="Steps of a single robot.")] = 3000,
+) -> None:
+    """One step of the FMU: ours, FMPy's two ways, the fleet per robot, a plain C loop."""
+    with Console(stderr=True).status("stepping"):
+        rows = fmu_bench.bench(robots, ticks)
+    table = Table("way", "µs a robot-step", f"× {fmu_bench.PLAIN}", title="one step of the robot")
+    for row in rows:
+        table.add_row(row.name, f"{1e6 * row.seconds:.3f}", f"{row.ratio:.1f}")
+    Console().print(table)
+
+
+def _timed(
+    console: Console,
+    what: str,
+    contenders: dict[str, filter_bench.Turn],
+    delays: tuple[int, ...],
+    ticks: int,
+) -> list[filter_bench.Timing]:
     with console.status(f"timing {what}"):
-        return list(timings(contenders, delays, ticks))
+        return list(filter_bench.timings(contenders, delays, ticks))

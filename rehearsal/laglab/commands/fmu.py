@@ -1,11 +1,12 @@
-"""``laglab fmu``."""
+"""`laglab fmu`."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.console import Console
 
-from laglab_fmu import build_fmus
+from laglab_fmu import PLATFORMS, build_fmus
 
 app = typer.Typer(help="The robot as an FMU.", no_args_is_help=True)
 
@@ -18,7 +19,16 @@ def fmu() -> None:
 @app.command()
 def build(
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the FMUs go.")] = Path(),
+    all_platforms: Annotated[
+        bool,
+        typer.Option(
+            "--all-platforms",
+            help="For Linux, Windows and macOS, by ziglang; the first time takes minutes.",
+        ),
+    ] = False,
 ) -> None:
-    """Build Robot2.fmu and Robot3.fmu."""
-    for path in build_fmus(out):
+    """Build Robot2.fmu, Robot3.fmu and Fleet3.fmu, for this machine or for all."""
+    with Console(stderr=True).status("compiling"):
+        built = build_fmus(out, PLATFORMS if all_platforms else ())
+    for path in built:
         print(path)

@@ -1,0 +1,26 @@
+"""Build the firmware for this computer: `python build.py [FOLDER]`, into build/ otherwise."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from laglab_protocol.dialect import dialect_path, generate
+
+HERE = Path(__file__).parent
+STRICT = ("-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
+
+
+def build(folder: Path) -> Path:
+    """mavgen's headers and the firmware into `folder`; returns the program."""
+    generate(dialect_path(), "C", folder / "include")
+    program = folder / "firmware"
+    compiler = [cc] if (cc := shutil.which("cc")) else [sys.executable, "-m", "ziglang", "cc"]
+    sources = sorted(HERE.glob("*.c"))
+    command = [*compiler, *STRICT, "-isystem", folder / "include", *sources, "-lm", "-o", program]
+    subprocess.run(command, check=True)
+    return program
+
+
+if __name__ == "__main__":
+    print(build(Path(sys.argv[1]) if sys.argv[1:] else HERE / "build"))

@@ -1,0 +1,129 @@
+/* A small robot on a serial port: `firmware [--speed F] DEVICE`. Its clock runs F times as fast as the wall's.
+ *
+ * It waits for a heartbeat, then ticks from 0 on, every SAMPLE_TIME of its own clock, until it is told to end. What
+ * has been received by a tick comes into force at that tick. */
+#define _DEFAULT_SOURCE
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <termios.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "body.h"
+#include "drive.h"
+#include "link.h"
+
+typedef struct {
+    int port;
+    bool running;
+    uint32_t tick;
+    Body body;
+    Drive drive;
+} Robot;
+
+/* Raw, 8N1, and without waiting: bytes come and go as they are. */
+static int open_port(const char *device) {
+    const int port = open(device, O_RDWR | O_NOCTTY | O_NONBLOCK);
+    struct termios settings;
+    if (port < 0 || tcgetattr(port, &settings) != 0) {
+        return -1;
+    }
+    cfmakeraw(&settings);
+    cfsetspeed(&settings, B115200);
+    return tcsetattr(port, TCSANOW, &settings) == 0 ? port : -1;
+}
+
+/* A tick that finds no room is dropped, as a UART would. */
+static bool send(const Robot *robot, const uint8_t *data, size_t size) {
+    return write(robot->port, data, size) >= 0 || errno == EAGAIN;
+}
+
+static bool obey(Robot *robot, LinkEvent event) {
+    uint8_t buffer[LINK_LARGEST];
+    switch (event.kind) {
+    case LINK_BEGIN:
+        if (!robot->running) {
+            robot->running = true;
+            robot->tick = 0;
+        }
+        return true;
+    case LINK_COMMAND:
+        if (robot->running) {
+            drive_follow(&robot->drive, robot->tick, event.stamp, event.v, event.omega);
+        }
+        return true;
+    case LINK_END:
+        robot->running = false;
+        robot->drive = drive_start();
+        return send(robot, buffer, link_write_end(buffer, robot->tick, event.reason));
+    default:
+        return true;
+    }
+}
+
+/* All that has arrived; false when the far end is gone. */
+static bool receive(Robot *robot) {
+    uint8_t data[256];
+    ssize_t size;
+    while ((size = read(robot->port, data, sizeof data)) > 0) {
+        for (ssize_t i = 0; i < size; i++) {
+            if (!obey(robot, link_read(data[i]))) {
+                return false;
+            }
+        }
+    }
+    return size < 0 && errno == EAGAIN;
+}
+
+/* Tick k: say where the robot is; from here on the newest command is in force; drive to k + 1. */
+static bool tick(Robot *robot) {
+    uint8_t buffer[LINK_LARGEST];
+    const size_t size = link_write_tick(buffer, robot->tick, body_measure(&robot->body), &robot->drive);
+    if (!send(robot, buffer, size) || !receive(robot)) {
+        return false;
+    }
+    drive_supervise(&robot->drive, robot->tick);
+    body_drive(&robot->body, robot->drive.v, robot->drive.omega, SAMPLE_TIME);
+    robot->tick++;
+    return true;
+}
+
+/* Sleep until an instant that is `seconds` after the last one: being late once makes nothing late after it. */
+static void sleep_on(struct timespec *deadline, double seconds) {
+    deadline->tv_nsec += (long)(seconds * 1e9);
+    deadline->tv_sec += deadline->tv_nsec / 1000000000L;
+    deadline->tv_nsec %= 1000000000L;
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, deadline, NULL) == EINTR) {
+    }
+}
+
+static void run(Robot *robot, double speed) {
+    struct timespec deadline;
+    clock_gettime(CLOCK_MONOTONIC, &deadline);
+    while (robot->running ? tick(robot) : receive(robot)) {
+        sleep_on(&deadline, SAMPLE_TIME / speed);
+    }
+}
+
+int main(int argc, char **argv) {
+    const bool faster = argc == 4 && strcmp(argv[1], "--speed") == 0;
+    const double speed = faster ? atof(argv[2]) : 1.0;
+    const char *device = argv[argc - 1];
+    if ((argc != 2 && !faster) || !(speed > 0 && speed <= 100)) {
+        fprintf(stderr, "usage: %s [--speed F] DEVICE, with F up to 100\n", argv[0]);
+        return 2;
+    }
+    Robot robot = {.port = open_port(device), .body = body_start(), .drive = drive_start()};
+    if (robot.port < 0) {
+        fprintf(stderr, "%s: cannot open it as a serial port: %s\n", device, strerror(errno));
+        return 1;
+    }
+    run(&robot, speed);
+    fprintf(stderr, "%s: the far end is gone\n", device);
+    return 1;
+}

@@ -1,0 +1,165 @@
+"""A robot with a clock of its own at the end of the link: its ticks drive everything. No I/O.
+
+To the robot we are its station, to the station we are the robot; in between lies the link. Each
+tick that the robot says has begun is one of the run. What the robot takes in during tick k comes
+into force at k + 1, so a command is sent on one tick before it is due: it is in force n ticks
+after its stamp, as on a simulated robot, unless n is 0; then it is one tick late.
+"""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from laglab_gateway.fates import Fates
+from laglab_gateway.services import RobotState, Services, standard_parameters
+from laglab_gateway.side import GatewayConfig, Outcome, RobotSide, reason_of
+from laglab_gateway.timeline import Direction
+from laglab_gateway.trace import TraceRow
+from laglab_protocol import (
+    ROBOT_COMPONENT,
+    ROBOT_SYSTEM,
+    STATION_COMPONENT,
+    STATION_SYSTEM,
+    Codec,
+    Command,
+    End,
+    EndReason,
+    Frame,
+    Heartbeat,
+    Measurement,
+    Tick,
+)
+
+MAV_TYPE_GCS, MAV_AUTOPILOT_INVALID, MAV_STATE_ACTIVE, MAVLINK_VERSION = 6, 8, 4, 3
+UNKNOWN = (None, None, None)
+
+
+class Heard(NamedTuple):
+    """A tick of the robot, with all the measurements that it announced."""
+
+    tick: int
+    samples: list[Measurement]
+
+
+def from_robot(frame: Frame) -> bool:
+    """Whether the robot itself sent it."""
+    return (frame.system, frame.component) == (ROBOT_SYSTEM, ROBOT_COMPONENT)
+
+
+class Relay(RobotSide):
+    """A robot at the end of a link, as its station meets it.
+
+    For every frame of `receive_from_robot` that `hear` says begins a tick: `close_tick`, unless it
+    is the first, then `open_tick`. After anything has come from either side, `forward`.
+    """
+
+    def __init__(
+        self,
+        config: GatewayConfig,
+        fates: Mapping[Direction, Fates] | None = None,
+        services: Services | None = None,
+        codec: Codec | None = None,
+    ) -> None:
+        n, m = config.command_delay, config.measurement_delay
+        services = services or Services(standard_parameters(n, m, config.safety), placeable=False)
+        super().__init__(config, services, fates, codec)
+        self.under_way = False
+        self.robot_end: End | None = None
+        robot_codec = Codec(STATION_SYSTEM, STATION_COMPONENT)
+        self._to_robot, self._from_robot = robot_codec.sender, robot_codec.receiver
+        self._samples: list[Measurement] = []
+        self._heard = Heard(-1, [])
+        self._last: Measurement | None = None
+        self._in_force = -1
+
+    @property
+    def state(self) -> RobotState:
+        """The robot by its last measurement, for those who ask."""
+        return RobotState(self.time_us, *(self._last[:5] if self._last else (0.0,) * 5))
+
+    def greeting(self) -> bytes:
+        """The frame that makes the robot begin its ticks."""
+        heartbeat = Heartbeat(
+            custom_mode=0,
+            type=MAV_TYPE_GCS,
+            autopilot=MAV_AUTOPILOT_INVALID,
+            base_mode=0,
+            system_status=MAV_STATE_ACTIVE,
+            mavlink_version=MAVLINK_VERSION,
+        )
+        return self._to_robot.frame(heartbeat)
+
+    def receive_from_robot(self, data: bytes, whole: bool) -> list[Frame]:
+        """The robot's frames in these bytes. No frame goes on after `whole`."""
+        frames = self._from_robot.receive(data)
+        if whole:
+            frames += self._from_robot.end_datagram()
+        return [frame for frame in frames if from_robot(frame)]
+
+    def hear(self, frame: Frame) -> bool:
+        """Take one frame of the robot; True when it begins a new tick, all announced with it.
+
+        A tick of which a frame was lost is passed over: the robot does not repeat it.
+        """
+        match frame.message:
+            case Measurement():
+                self._samples.append(frame.message)
+            case Tick(tick, announced):
+                samples, self._samples = self._samples, []
+                if len(samples) == announced and tick > self._heard.tick:
+                    self._heard = Heard(tick, samples)
+                    return True
+            case End():
+                self.robot_end = frame.message
+                self.outcome = self.outcome or Outcome(reason_of(frame.message), self.tick)
+        return False
+
+    def open_tick(self) -> list[bytes]:
+        """Begin the tick just heard; the frames for the station."""
+        tick, samples = self._heard
+        if not self.under_way:
+            self.first, self._in_force = tick, tick - 1
+            self.under_way = True
+        self._begin_tick(tick)
+        for sample in samples:
+            self._last = sample
+            self._audit(sample)
+        return self._tell(samples)
+
+    def _audit(self, sample: Measurement) -> None:
+        """n by the robot's own word: the command of the sample was in force from s - 1 on."""
+        if self._in_force < sample.command_tick <= self._drive.command_tick:
+            self._in_force = sample.command_tick
+            self.audit.command.arrived(sample.command_tick, sample.tick - 1)
+
+    def forward(self) -> list[bytes]:
+        """The frames for the robot: the commands that are to come into force at its next tick."""
+        crossed = [crossing.message for crossing in self._commands.due(self.elapsed + 1)]
+        return [
+            self._to_robot.frame(self._allowed(command))
+            for command in crossed
+            if self._follow(command, self.tick + 1)
+        ]
+
+    def _allowed(self, command: Command) -> Command:
+        """For the robot, with its stamp, and without the estimate that went before it."""
+        v, omega = self._armed(command.v, command.omega)
+        return Command(v, omega, command.tick, ROBOT_SYSTEM, ROBOT_COMPONENT, estimates=0)
+
+    def close_tick(self) -> TraceRow:
+        """What happened at this tick; the next one, just heard, says what was in force."""
+        row = self._row(UNKNOWN, self._sampled(), self._reported())
+        self._close()
+        return row
+
+    def _sampled(self) -> tuple[float | None, float | None, float | None]:
+        last = self._last
+        return last[:3] if last and last.tick == self.tick else UNKNOWN
+
+    def _reported(self) -> tuple[float | None, float | None]:
+        """v and ω on [t_k, t_{k+1}), which the sample of k + 1 echoes."""
+        echoes = [z[3:5] for z in self._heard.samples if z.tick == self.tick + 1]
+        return echoes[0] if echoes else (None, None)
+
+    def end_of_robot(self, reason: EndReason) -> bytes:
+        """The frame that stops the robot."""
+        return self._to_robot.frame(End(self.tick, reason))

@@ -1,0 +1,274 @@
+"""The robot's side as its station meets it, whatever it is that moves. No clock, no I/O.
+
+Bytes in, frames out; the two channels of the link with their audit; which command is followed.
+What moves comes in two kinds: a plant that is stepped (`core`), and a robot with a clock of its
+own (`relay`).
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from laglab_gateway.audit import Audit, DirectionAudit
+from laglab_gateway.channel import Channel
+from laglab_gateway.drive import Drive, Safety, follow, refusal
+from laglab_gateway.fates import Fates, Kind
+from laglab_gateway.linklog import LinkRow
+from laglab_gateway.services import RobotState, Services
+from laglab_gateway.timeline import Direction
+from laglab_gateway.trace import TraceRow
+from laglab_protocol import (
+    ROBOT_COMPONENT,
+    ROBOT_SYSTEM,
+    STATION_COMPONENT,
+    STATION_SYSTEM,
+    Codec,
+    Command,
+    End,
+    EndReason,
+    Estimate,
+    Frame,
+    Heartbeat,
+    Measurement,
+    Message,
+    Statustext,
+    Tick,
+)
+
+
+@dataclass(frozen=True)
+class GatewayConfig:
+    """Delays n and m [ticks], the tick that ends the run, Ts [s], what else the link does."""
+
+    command_delay: int
+    measurement_delay: int
+    last_tick: int
+    sample_time: float
+    safety: Safety = field(default_factory=Safety)
+
+
+class Outcome(NamedTuple):
+    """How a run ended, and at which tick."""
+
+    reason: EndReason
+    tick: int
+
+
+def from_station(frame: Frame) -> bool:
+    """Whether the remote station sent it: nobody else may command."""
+    return (frame.system, frame.component) == (STATION_SYSTEM, STATION_COMPONENT)
+
+
+def reason_of(end: End) -> EndReason:
+    """Why it ended; a reason that the dialect does not have counts as a failure."""
+    return EndReason(end.reason) if end.reason in set(EndReason) else EndReason.FAILED
+
+
+MAV_SEVERITY_WARNING = 4
+Cell = float | None
+
+
+class RobotSide(ABC):
+    """One end of a link that is late, and perhaps worse."""
+
+    def __init__(
+        self,
+        config: GatewayConfig,
+        services: Services,
+        fates: Mapping[Direction, Fates] | None = None,
+        codec: Codec | None = None,
+    ) -> None:
+        n, m, Ts = config.command_delay, config.measurement_delay, config.sample_time
+        self.first = 0
+        """The run's first tick."""
+        self.tick = 0
+        self.connected = False
+        self.outcome: Outcome | None = None
+        self.station_end: End | None = None
+        self.audit = Audit(DirectionAudit(n), DirectionAudit(m))
+        self.services = services
+        self._config = config
+        codec = codec or Codec(ROBOT_SYSTEM, ROBOT_COMPONENT)
+        self._sender, self._receiver = codec.sender, codec.receiver
+        self._replies: list[Message] = []
+        self._notices: list[Message] = []
+        fates = fates or {}
+        self._commands: Channel[Command] = Channel("command", n, Ts, fates.get("command"))
+        self._measurements: Channel[Measurement] = Channel(
+            "measurement", m, Ts, fates.get("measurement")
+        )
+        self._answered_through = -1
+        self._drive = Drive()
+        self._begin_tick(0)
+
+    def _begin_tick(self, tick: int) -> None:
+        self.tick = tick
+        self._batch: list[Message] = []
+        self._estimates: list[Estimate] = []
+        self._command: Command | None = None
+
+    @property
+    def elapsed(self) -> int:
+        """Ticks since the run's first: by these the link delays and its timeline goes."""
+        return self.tick - self.first
+
+    @property
+    def time_us(self) -> int:
+        """Time of this tick since the run's first [µs]."""
+        return round(self.elapsed * self._config.sample_time * 1e6)
+
+    @property
+    @abstractmethod
+    def state(self) -> RobotState:
+        """The robot at this tick, for those who ask."""
+
+    @property
+    def answered(self) -> bool:
+        """Whether the station has said all it has to say on this tick."""
+        return self._command is not None
+
+    @abstractmethod
+    def open_tick(self) -> list[bytes]:
+        """The frames that begin this tick for the station."""
+
+    def _tell(self, samples: Iterable[Measurement]) -> list[bytes]:
+        """Put samples on the link; the frames: each z that has come across, and the tick."""
+        for sample in samples:
+            self._measurements.push(self.elapsed, sample)
+        due = [crossing.message for crossing in self._measurements.due(self.elapsed)]
+        for measurement in due:
+            self.audit.measurement.arrived(measurement.tick, self.tick)
+        self._batch = [*due, Tick(self.tick, len(due))]
+        return self.repeat_tick()
+
+    def repeat_tick(self) -> list[bytes]:
+        """The same messages in new frames: the station may have missed the first."""
+        return [self._sender.frame(message) for message in self._batch]
+
+    def receive(self, data: bytes, whole: bool) -> list[Frame]:
+        """Take bytes from the link; returns the frames in them. No frame goes on after `whole`."""
+        frames = self._receiver.receive(data)
+        if whole:
+            frames += self._receiver.end_datagram()
+        for frame in frames:
+            if not from_station(frame) or not self._take(frame.message):
+                self._replies += self.services.answer(frame, self.state)
+        return frames
+
+    def _take(self, message: Message) -> bool:
+        """Take what belongs to the loop; False when it does not."""
+        match message:
+            case Heartbeat():
+                self.connected = True
+            case Estimate() if message.tick == self.tick and not self.answered:
+                self._estimates.append(message)
+            case Command() if message.tick == self.tick and not self.answered:
+                self._take_answer(message)
+            case Command() if self._answered_through < message.tick < self.tick:
+                self._push(message)
+            case Command() | Estimate():
+                pass  # said again, or of a tick that has not come
+            case End():
+                self.station_end = message
+            case _:
+                return False
+        return True
+
+    def _take_answer(self, command: Command) -> None:
+        if len(self._estimates) < command.estimates:
+            return  # a frame of this answer was lost: the repeat will bring it whole
+        self._command = command
+        self._push(command)
+
+    def _push(self, command: Command) -> None:
+        self._answered_through = command.tick
+        self._commands.push(self.elapsed, command)
+
+    def _follow(self, command: Command, tick: int) -> bool:
+        """Follow from `tick` on a command that came across; False, and counted, when refused."""
+        if refused := refusal(self._drive, command, self.safety):
+            self.audit.refused[refused] += 1
+            return False
+        self._drive = follow(command, tick)
+        return True
+
+    @property
+    def safety(self) -> Safety:
+        """The limits and times now: ground stations may set some of them."""
+        now = self.services.parameters
+        limits = (now["V_MAX"] or None, now["OMEGA_MAX"] or None)
+        return Safety(*limits, now["LINK_TIMEOUT"], self._config.safety.ramp)
+
+    def _armed(self, v: float, omega: float) -> tuple[float, float]:
+        """These speeds, or standstill while the robot is disarmed."""
+        return (v, omega) if self.services.arming.armed else (0.0, 0.0)
+
+    def announce(self, text: str) -> None:
+        """Warn everybody who listens, in at most 50 characters, at the end of this tick."""
+        self._notices.append(Statustext(MAV_SEVERITY_WARNING, text.encode()[:50]))
+
+    def take_replies(self) -> list[bytes]:
+        """The frames that answer requests since the last call: not of the loop, to be sent too."""
+        replies, self._replies = self._replies, []
+        return [self._sender.frame(message) for message in replies]
+
+    def take_notices(self) -> list[Message]:
+        """What the robot did by itself since the last call: everybody is told."""
+        notices, self._notices = self._notices, []
+        self._replies += notices
+        return notices
+
+    def ask_time(self) -> list[bytes]:
+        """The question how far the station's clock is away, if there is a clock to compare with."""
+        timesync = self.services.timesync
+        return [self._sender.frame(timesync.ask())] if timesync else []
+
+    def take_link_rows(self) -> list[LinkRow]:
+        """What the link did to the frames that entered it since the last call."""
+        measurements, commands = self._measurements.take_log(), self._commands.take_log()
+        self.audit.measurement.fates.update(Kind(row.fate) for row in measurements)
+        self.audit.command.fates.update(Kind(row.fate) for row in commands)
+        return [*measurements, *commands]
+
+    @abstractmethod
+    def close_tick(self) -> TraceRow:
+        """Say what happened at this tick, and whether the run ends with it (`outcome`)."""
+
+    @property
+    def _ending(self) -> Outcome | None:
+        """How the run ends at this tick; None when it goes on."""
+        if self.station_end is not None:
+            return Outcome(reason_of(self.station_end), self.tick)
+        if self.elapsed >= self._config.last_tick:
+            return Outcome(EndReason.COMPLETED, self.tick)
+        return None
+
+    def _close(self) -> None:
+        self.audit.unanswered += not self.answered
+        self.outcome = self.outcome or self._ending
+
+    def _row(
+        self,
+        pose: tuple[Cell, Cell, Cell],
+        sample: tuple[Cell, Cell, Cell],
+        speeds: tuple[Cell, Cell],
+    ) -> TraceRow:
+        x_est, y_est, theta_est = self._estimates[0][:3] if self._estimates else (None,) * 3
+        v_sent, omega_sent = self._command[:2] if self._command else (None, None)
+        return TraceRow(
+            self.tick,
+            self.elapsed * self._config.sample_time,
+            *pose,
+            *sample,
+            x_est,
+            y_est,
+            theta_est,
+            v_sent,
+            omega_sent,
+            *speeds,
+        )
+
+    def end(self, reason: EndReason) -> bytes:
+        """The frame that tells the station that the run is over."""
+        return self._sender.frame(End(self.tick, reason))
