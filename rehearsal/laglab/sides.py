@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from laglab.scenario import Scenario
-from laglab_controller import Law, RobotModel, StationConfig
+from laglab_controller import Law, RobotModel, Station, StationConfig
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
     IDEAL,
@@ -154,3 +154,10 @@ def station_config(scenario: Scenario) -> StationConfig:
         initial_covariance=scenario.initial_covariance * np.eye(3),
         command_delay=scenario.command_delay,
     )
+
+
+def station_statistics(station: Station) -> dict[str, Any]:
+    """The station's own report, for the summary."""
+    n, m, times, warnings = station.report()
+    timed = {f"tick_{name}_s": value for name, value in times._asdict().items()} if times else {}
+    return {"station": {"n_seen": n, "m_seen": m, **timed, "warnings": list(warnings)}}
