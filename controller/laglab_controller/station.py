@@ -14,6 +14,7 @@ from laglab_controller.watch import StationReport, gain_warning, tick_times
 from laglab_protocol import (
     STATION_COMPONENT,
     STATION_SYSTEM,
+    Codec,
     Command,
     End,
     EndReason,
@@ -22,8 +23,6 @@ from laglab_protocol import (
     Heartbeat,
     Measurement,
     Message,
-    Receiver,
-    Sender,
     Tick,
     Timesync,
 )
@@ -46,15 +45,16 @@ class Station:
         config: StationConfig,
         controller: Callable[[StationConfig], Controller] = Controller,
         clock: Callable[[], int] | None = None,
+        codec: Codec | None = None,
     ) -> None:
         """`clock` [ns] times the ticks and answers TIMESYNC; without one neither is done."""
+        codec = codec or Codec(STATION_SYSTEM, STATION_COMPONENT)
         self._config = config
         self._make_controller = controller
         self._clock = clock
         self._controller = controller(config)
         self._joining: Rest | None = None
-        self._sender = Sender(STATION_SYSTEM, STATION_COMPONENT)
-        self._receiver = Receiver()
+        self._sender, self._receiver = codec.sender, codec.receiver
         self._robot: tuple[int, int] | None = None
         self._measurements: list[Measurement] = []
         self._first = 0

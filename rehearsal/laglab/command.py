@@ -4,11 +4,22 @@ import sys
 
 import typer
 
-from laglab.commands import bench, compare, consistency, errata, fmu, replay, run, scenarios, sides
+from laglab.commands import (
+    bench,
+    compare,
+    consistency,
+    errata,
+    fmu,
+    protocol,
+    replay,
+    run,
+    scenarios,
+    sides,
+)
 from laglab.errors import LaglabError, RunError, ScenarioError
 from laglab.processes import SIDE_ERRORS
 from laglab_controller import StationError
-from laglab_gateway import StationSilentError
+from laglab_gateway import RobotSilentError, StationSilentError
 from laglab_protocol import FarEndGoneError, FarEndStalledError
 
 app = typer.Typer(
@@ -28,8 +39,16 @@ app.command("gateway")(sides.gateway)
 app.command("controller")(sides.controller)
 app.add_typer(bench.app, name="bench")
 app.add_typer(fmu.app, name="fmu")
+app.add_typer(protocol.app, name="protocol")
+app.command("conform")(protocol.conform)
 
-LINK_LOST = (StationError, StationSilentError, FarEndGoneError, FarEndStalledError)
+LINK_LOST = (
+    StationError,
+    StationSilentError,
+    RobotSilentError,
+    FarEndGoneError,
+    FarEndStalledError,
+)
 """What ends a run that had begun; the other errors of a side are the user's to mend."""
 
 

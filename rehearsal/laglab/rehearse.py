@@ -1,7 +1,6 @@
 """One rehearsal: start the two sides, follow them, and keep what they leave."""
 
 import tempfile
-import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
@@ -25,8 +24,7 @@ from laglab.processes import (
     station_process,
 )
 from laglab.scenario import Scenario
-from laglab.sides import open_gateway, serve, station_config, station_statistics
-from laglab_controller import Station
+from laglab.sides import Setup, open_robot, open_station, station_statistics
 from laglab_gateway import FileRecorder, Outcome, Patience
 
 Transport = Literal["inline", "udp", "serial"]
@@ -47,24 +45,37 @@ class Ending:
 
 
 def rehearse(
-    scenario: Scenario, transport: Transport, directory: Path, progress: Callable[[int], None]
+    scenario: Scenario,
+    transport: Transport,
+    directory: Path,
+    progress: Callable[[int], None],
+    setup: Setup | None = None,
 ) -> Ending:
-    """Run both sides to the end; trace, log and scenario are then in ``directory``."""
+    """Run both sides to the end; trace, log and scenario are then in `directory`.
+
+    A real robot does not wait for a station, so it cannot be part of an inline run.
+    """
+    setup = setup or Setup()
     directory.mkdir(parents=True, exist_ok=True)
     (directory / SCENARIO_FILE).write_text(scenario.to_toml(), encoding="utf-8")
     if transport == "inline":
-        return _inline(scenario, directory, progress)
+        return _inline(scenario, directory, progress, setup)
     with _gateway_url(transport) as url:
-        return _two_processes(scenario, url, directory, progress)
+        return _two_processes(scenario, url, directory, progress, setup)
 
 
-def _inline(scenario: Scenario, directory: Path, progress: Callable[[int], None]) -> Ending:
+def _inline(
+    scenario: Scenario, directory: Path, progress: Callable[[int], None], setup: Setup
+) -> Ending:
     clock = LoopClock(progress)
     try:
-        with open_gateway(scenario) as gateway, closing(FileRecorder(directory)) as recorder:
-            station = Station(station_config(scenario), clock=time.monotonic_ns)
+        with (
+            open_robot(scenario, setup) as serve,
+            open_station(scenario, setup.key) as station,
+            closing(FileRecorder(directory)) as recorder,
+        ):
             endpoint = InlineEndpoint(station)
-            outcome, statistics = serve(scenario, gateway, endpoint, recorder, Patience(), clock)
+            outcome, statistics = serve(endpoint, recorder, Patience(), clock)
     except SIDE_ERRORS as error:
         return Ending(None, str(error), clock.seconds, {})
     return Ending(outcome, None, clock.seconds, statistics | station_statistics(station))
@@ -86,16 +97,20 @@ def far_end(address: str) -> str:
 
 
 def _two_processes(
-    scenario: Scenario, url: str, directory: Path, progress: Callable[[int], None]
+    scenario: Scenario,
+    url: str,
+    directory: Path,
+    progress: Callable[[int], None],
+    setup: Setup,
 ) -> Ending:
     notice = scenario.silence_timeout + NOTICE_SECONDS
-    with started("gateway", gateway_process, scenario, url, directory) as gateway:
+    with started("gateway", gateway_process, scenario, url, directory, setup) as gateway:
         match gateway.next_report():
             case Listening(address):
                 station_url = far_end(address)
             case report:
                 return _ending(report, [], 0.0, {})
-        with started("controller", station_process, scenario, station_url) as station:
+        with started("controller", station_process, scenario, station_url, setup) as station:
             try:
                 return _follow(gateway, station, notice, progress)
             except KeyboardInterrupt:

@@ -1,0 +1,337 @@
+"""A small robot and a small controller that keep the rules, each with one fault if told so."""
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Self
+
+from laglab_protocol import (
+    NO_COMMAND,
+    AutopilotVersion,
+    Codec,
+    Command,
+    CommandAck,
+    CommandLong,
+    End,
+    Endpoint,
+    Estimate,
+    Frame,
+    Heartbeat,
+    Measurement,
+    Message,
+    ParamRequestList,
+    ParamRequestRead,
+    ParamValue,
+    Ping,
+    Sender,
+    Tick,
+)
+from laglab_protocol.conform.forge import Forged
+from laglab_protocol.conform.framing import UNKNOWN_FLAG, UNKNOWN_ID
+from laglab_protocol.frame import HEADER_SIZE, Refusal, decode
+from laglab_protocol.layout import LAYOUT_OF_ID
+
+REPEAT_AFTER = 0.03
+ALIVE = Heartbeat(0, 10, 0, 0, 4, 3)
+
+
+class Peer(threading.Thread):
+    """Listens until END, or until it is left; `fault` is what it does wrong."""
+
+    system, component = 1, 1
+    master = (200, 190)
+
+    def __init__(self, endpoint: Endpoint, fault: str, key_file: Path | None) -> None:
+        super().__init__()
+        self.endpoint = endpoint
+        self.fault = fault
+        self.codec = Codec(self.system, self.component, key_file)
+        self.open = Codec(self.system, self.component)
+        self.left = threading.Event()
+        self.deaf = 0
+        self.slow = False
+
+    def __enter__(self) -> Self:
+        self.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.left.set()
+        self.join()
+        self.codec.close()
+
+    def run(self) -> None:
+        while not self.left.is_set():
+            data = self.endpoint.receive(REPEAT_AFTER)
+            if not data:
+                self.silence()
+            for frame in self.intake(data):
+                self.endpoint.accept_peer()
+                if (frame.system, frame.component) == self.master or self.fault == "obeys anybody":
+                    self.hear(frame.message)
+
+    def silence(self) -> None:
+        """Nothing came for a while."""
+
+    def hear(self, message: Message) -> None:
+        """A message came from the other side."""
+
+    def intake(self, data: bytes) -> list[Frame]:
+        if self.deaf and data:
+            self.deaf -= 1
+            return []
+        data = INTAKE.get(self.fault, lambda _, data: data)(self, data)
+        receiver = self.codec.receiver
+        if self.fault == "believes the unsigned" and data[:1] == b"\xfd" and not data[2]:
+            receiver = self.open.receiver
+        return receiver.receive(data) + receiver.end_datagram()
+
+    def send(self, *messages: Message) -> None:
+        if self.slow:
+            time.sleep(0.3)
+        raw = b"".join(self.framed(message) for message in messages)
+        self.endpoint.send(raw + (b"?" if self.fault == "sends stray bytes" else b""))
+        if self.fault == "signs not all":
+            self.endpoint.send(Sender(self.system, self.component).frame(ALIVE))
+
+    def framed(self, message: Message) -> bytes:
+        raw = self.codec.sender.frame(message)
+        if self.fault == "skips numbers":
+            self.codec.sender.frame(message)
+        if self.fault == "sends zeros":
+            forged = Forged.of(message, self.system, self.component, raw[4], None)
+            return forged.untrimmed(message).raw
+        return raw
+
+
+def refused_as(data: bytes, refusal: Refusal) -> bool:
+    return bool(data) and decode(data, 0) is refusal
+
+
+def mended(data: bytes, **parts: object) -> bytes:
+    """The frame in `data`, with a right CRC, or with other parts too."""
+    layout = LAYOUT_OF_ID[int.from_bytes(data[7:10], "little")]
+    payload = data[HEADER_SIZE : HEADER_SIZE + data[1]]
+    forged = Forged(payload, layout.id, layout.crc_extra, data[5], data[6], data[4])
+    return replace(forged, **parts).raw  # type: ignore[arg-type]
+
+
+def half_crc(_: Peer, data: bytes) -> bytes:
+    right = refused_as(data, Refusal.BAD_CRC) and mended(data)
+    flipped = right and data[-1] == right[-1] ^ 1 and data[-2] == right[-2]
+    return right if right and flipped else data
+
+
+def other_extra(_: Peer, data: bytes) -> bytes:
+    if not refused_as(data, Refusal.BAD_CRC):
+        return data
+    extra = LAYOUT_OF_ID[int.from_bytes(data[7:10], "little")].crc_extra[0] ^ 1
+    other = mended(data, crc_extra=bytes([extra]))
+    return mended(data) if other == data else data
+
+
+def any_flags(_: Peer, data: bytes) -> bytes:
+    return mended(data) if data and data[2] == UNKNOWN_FLAG else data
+
+
+def no_flags(_: Peer, data: bytes) -> bytes:
+    return b"" if data[3:4] == bytes([UNKNOWN_FLAG]) else data
+
+
+def size_of(data: bytes) -> int:
+    return LAYOUT_OF_ID[int.from_bytes(data[7:10], "little")].size
+
+
+def no_zeros(_: Peer, data: bytes) -> bytes:
+    if not data or not isinstance(decode(data, 0), Frame):
+        return data
+    untrimmed = data[1] == size_of(data) and data[HEADER_SIZE - 1 + data[1]] == 0
+    return b"" if untrimmed else data
+
+
+def no_longer(_: Peer, data: bytes) -> bytes:
+    found = decode(data, 0) if data else None
+    return b"" if isinstance(found, Frame) and data[1] > size_of(data) else data
+
+
+def half_eats(peer: Peer, data: bytes) -> bytes:
+    if refused_as(data, Refusal.INCOMPLETE) and not data.startswith(b"\xfd\xff"):
+        peer.deaf = 1
+    return data
+
+
+def starts(*prefixes: bytes) -> Callable[[Peer, bytes], bytes]:
+    return lambda _, data: b"" if data.startswith(prefixes) else data
+
+
+def unknown_id(_: Peer, data: bytes) -> bytes:
+    return b"" if data[7:10] == UNKNOWN_ID.to_bytes(3, "little") else data
+
+
+def any_signature(peer: Peer, data: bytes) -> bytes:
+    return signed_again(peer, data, lambda timestamp, now: timestamp > now)
+
+
+def any_time(peer: Peer, data: bytes) -> bytes:
+    return signed_again(peer, data, lambda timestamp, now: timestamp < now - 10**6)
+
+
+def signed_again(peer: Peer, data: bytes, which: Callable[[int, int], bool]) -> bytes:
+    """Believe frames whose timestamp is of this kind, whoever signed them: read them unsigned."""
+    from laglab_protocol.signing import signing_time
+
+    if data and data[2] == 1 and which(int.from_bytes(data[-12:-6], "little"), signing_time()):
+        found = decode(data, 0)
+        if isinstance(found, Frame):
+            peer.hear(found.message)
+            return b""
+    return data
+
+
+INTAKE: dict[str, Callable[[Peer, bytes], bytes]] = {
+    "compares half of the CRC": half_crc,
+    "knows no CRC_EXTRA": other_extra,
+    "takes any incompatibility flag": any_flags,
+    "refuses compatibility flags": no_flags,
+    "refuses untrimmed payloads": no_zeros,
+    "refuses longer payloads": no_longer,
+    "half a frame eats the next": half_eats,
+    "chokes on garbage": starts(b"\1\2"),
+    "chokes on a false start": starts(b"\xfd\xff"),
+    "chokes on MAVLink 1": starts(b"\xfe"),
+    "chokes on unknown messages": unknown_id,
+    "believes any signature": any_signature,
+    "believes old frames": any_time,
+}
+
+
+class Robot(Peer):
+    """Stands still."""
+
+    def __init__(self, endpoint: Endpoint, fault: str, key_file: Path | None) -> None:
+        super().__init__(endpoint, fault, key_file)
+        self.tick: int | None = None
+        self.estimates = 0
+        self.repeats = 0
+
+    def silence(self) -> None:
+        if self.tick is not None and self.fault != "never repeats":
+            self.repeats += 1
+            self.say_tick(self.tick)
+
+    def say_tick(self, tick: int) -> None:
+        x = float(self.repeats) if self.fault == "measures again for a repeat" else 0.0
+        v = 0.1 if self.fault == "moves by itself" else 0.0
+        sample = Measurement(x, 0.0, 0.0, v, 0.0, tick, tick - 1 if tick else NO_COMMAND)
+        self.send(sample, Tick(tick, 2 if self.fault == "miscounts measurements" else 1))
+
+    def hear(self, message: Message) -> None:
+        match message:
+            case Heartbeat() if self.tick is None:
+                self.tick = 0
+                self.say_tick(0)
+            case Estimate():
+                self.estimates += 1
+            case Command():
+                self.hear_command(message)
+            case End() if self.fault != "ignores END":
+                reason = 3 if self.fault == "gives another reason" else message.reason
+                self.send(End(self.tick or 0, reason))
+                self.left.set()
+            case _:
+                self.serve(message)
+
+    def hear_command(self, command: Command) -> None:
+        assert self.tick is not None
+        ticks = {
+            "takes later commands": (0, 1),
+            "takes earlier commands": (0, -1),
+        }.get(self.fault, (0,))
+        if command.v != command.v:
+            self.slow = self.fault == "is slow"
+            self.deaf = 1 if self.fault == "stumbles over NaN" else 0
+            return
+        whole = self.estimates >= command.estimates or self.fault == "does not wait for estimates"
+        if command.tick - self.tick in ticks and whole:
+            self.estimates = 0
+            self.tick += 2 if self.fault == "leaves ticks out" and self.tick > 12 else 1
+            self.say_tick(self.tick)
+
+    def serve(self, message: Message) -> None:
+        number = 1 if self.fault == "loses parameters" else 2
+        values = [ParamValue(float(i), 2, i, b"P%d" % i, 9) for i in range(2)]
+        match message:
+            case CommandLong():
+                self.send(*self.acknowledge(message))
+            case ParamRequestList():
+                self.send(*values[:number])
+            case ParamRequestRead(index, _, _, name):
+                self.send(values[0 if index == 0 or self.fault != "mixes names up" else 1])
+                del name
+            case Ping() if self.fault != "does not answer pings":
+                self.send(message._replace(target_system=200, target_component=190))
+
+    def acknowledge(self, message: CommandLong) -> list[Message]:
+        if message.command != 512:
+            return [CommandAck(message.command, 0 if self.fault == "accepts any command" else 3)]
+        reports: dict[int, Message] = {
+            0: ALIVE,
+            148: AutopilotVersion(0, 0, 1, 0, 0, 0, 0, 0, (0,) * 8, (0,) * 8, (0,) * 8),
+        }
+        told = self.fault != f"does not report {int(message.param1)}"
+        return [CommandAck(512, 0), *([reports[int(message.param1)]] if told else [])]
+
+
+class Controller(Peer):
+    """Commands standstill."""
+
+    system, component = 200, 190
+    master = (1, 1)
+
+    def __init__(self, endpoint: Endpoint, fault: str, key_file: Path | None) -> None:
+        super().__init__(endpoint, fault, key_file)
+        self.last: int | None = None
+        self.measurements = 0
+        self.again = 0
+
+    def silence(self) -> None:
+        if self.last is None:
+            self.send(ALIVE)
+
+    def hear(self, message: Message) -> None:
+        match message:
+            case Measurement():
+                self.measurements += 1
+            case Tick():
+                self.hear_tick(message)
+            case End() if self.fault != "ignores END":
+                reason = 3 if self.fault == "gives another reason" else message.reason
+                times = 2 if self.fault == "says END twice" else 1
+                self.send(*[message._replace(reason=reason)] * times)
+                self.left.set()
+
+    def hear_tick(self, message: Tick) -> None:
+        complete = self.measurements == message.measurements
+        self.measurements = 0
+        if not complete and self.fault != "does not count measurements":
+            return
+        newest = self.last is None or message.tick > self.last
+        if not newest and message.tick != self.last and self.fault != "goes back in time":
+            return
+        self.again = 0 if newest else self.again + 1
+        self.last = message.tick
+        self.answer(message.tick)
+
+    def answer(self, tick: int) -> None:
+        self.slow = self.fault == "is slow" and tick > 28
+        v = float(self.again) if self.fault == "answers a repeat anew" else 0.0
+        if self.fault == "commands infinity":
+            v = float("inf")
+        stamp = tick + 1 if self.fault == "stamps estimates wrong" else tick
+        target = 2 if self.fault == "aims elsewhere" else 1
+        estimate = Estimate(*[0.0] * 9, tick=stamp)  # type: ignore[misc]
+        command = Command(v, 0.0, tick, target, 1, 1)
+        twice = self.fault == "answers twice" and tick > 18
+        self.send(estimate, command, *([estimate, command] if twice else []))

@@ -1,0 +1,165 @@
+"""The kit passes what keeps the rules, and finds each fault: its own item, and no other."""
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from laglab_protocol import make_key, open_endpoint
+from laglab_protocol.conform import Patience, Report, conform, controller, robot
+
+from .reference_peers import Controller, Robot
+
+QUICK = Patience(appear=3.0, react=0.6, refuse=0.07)
+
+BOTH = {
+    "compares half of the CRC": "a corrupted frame is refused",
+    "knows no CRC_EXTRA": "another definition of the message is refused",
+    "takes any incompatibility flag": "unknown incompatibility flags are refused",
+    "refuses compatibility flags": "unknown compatibility flags are taken",
+    "refuses untrimmed payloads": "untrimmed payloads are taken",
+    "refuses longer payloads": "longer payloads of later versions are taken",
+    "half a frame eats the next": "a frame cut short does not eat the next",
+    "chokes on garbage": "garbage before a frame costs nothing",
+    "chokes on a false start": "a false start before a frame costs nothing",
+    "chokes on MAVLink 1": "MAVLink 1 does no harm",
+    "chokes on unknown messages": "an unknown message is passed over",
+    "obeys anybody": "another system is not obeyed",
+    "sends stray bytes": "it sends nothing but frames",
+    "skips numbers": "it numbers its frames one by one",
+    "sends zeros": "it leaves trailing zeros at home",
+}
+SIGNED = {
+    "believes the unsigned": "unsigned frames are refused",
+    "believes any signature": "frames signed with another key are refused",
+    "believes old frames": "old timestamps are refused",
+    "signs not all": "it signs what it sends",
+}
+ROBOT = BOTH | {
+    "never repeats": "an unanswered tick is repeated",
+    "measures again for a repeat": "a repeat brings the same messages",
+    "miscounts measurements": "the tick counts its measurements",
+    "moves by itself": "measurements tell the command in force",
+    "leaves ticks out": "it goes from tick to tick",
+    "takes later commands": "a command for a later tick is no answer",
+    "takes earlier commands": "a command for an earlier tick is no answer",
+    "does not wait for estimates": "an answer waits for its estimate",
+    "stumbles over NaN": "it survives a command that is not finite",
+    "is slow": "it goes on within 0.25 s",
+    "accepts any command": "an unknown command is acknowledged as such",
+    "does not report 0": "it reports Heartbeat on request",
+    "does not report 148": "it reports AutopilotVersion on request",
+    "loses parameters": "it lists its parameters",
+    "mixes names up": "it reads a parameter by index and name",
+    "does not answer pings": "it answers a ping",
+    "ignores END": "it answers END",
+    "gives another reason": "it answers END",
+}
+CONTROLLER = BOTH | {
+    "stamps estimates wrong": "an answer is whole and stamped",
+    "answers a repeat anew": "a repeated tick gets the same answer",
+    "answers twice": "a tick is answered once",
+    "does not count measurements": "a tick whose measurement is missing gets no answer",
+    "goes back in time": "time does not go back",
+    "aims elsewhere": "commands are meant for the robot",
+    "commands infinity": "commands are finite",
+    "is slow": "it answers within 0.25 s",
+    "says END twice": "it answers END once",
+    "ignores END": "it answers END once",
+    "gives another reason": "it answers END once",
+}
+NOT_ALONE = {
+    "it begins when a station is heard",
+    "it calls until the robot is heard",
+    "an ordinary frame is taken",
+}
+"""A peer that fails one of these can pass no other."""
+
+
+def robot_with(fault: str, key_file: Path | None = None) -> Report:
+    with open_endpoint("udpin://127.0.0.1:0") as endpoint, Robot(endpoint, fault, key_file):
+        return conform(endpoint.name.replace("udpin", "udpout"), "robot", key_file, QUICK)
+
+
+def controller_with(fault: str, key_file: Path | None = None) -> Report:
+    with open_endpoint("udpin://127.0.0.1:0") as free:
+        url = free.name
+    with (
+        open_endpoint(url.replace("udpin", "udpout")) as endpoint,
+        Controller(endpoint, fault, key_file),
+    ):
+        return conform(url, "controller", key_file, QUICK)
+
+
+@pytest.fixture
+def key_file(tmp_path: Path) -> Path:
+    make_key(tmp_path / "key")
+    return tmp_path / "key"
+
+
+def test_a_faultless_robot_conforms(key_file: Path) -> None:
+    assert robot_with("").failed == []
+    assert robot_with("", key_file).failed == []
+
+
+def test_a_faultless_controller_conforms(key_file: Path) -> None:
+    assert controller_with("").failed == []
+    assert controller_with("", key_file).failed == []
+
+
+@pytest.mark.parametrize("fault", ROBOT)
+def test_a_broken_robot_fails_its_own_item_alone(fault: str) -> None:
+    assert robot_with(fault).failed == [ROBOT[fault]]
+
+
+@pytest.mark.parametrize("fault", CONTROLLER)
+def test_a_broken_controller_fails_its_own_item_alone(fault: str) -> None:
+    assert controller_with(fault).failed == [CONTROLLER[fault]]
+
+
+@pytest.mark.parametrize("fault", SIGNED)
+def test_a_trusting_robot_fails_its_own_item_alone(fault: str, key_file: Path) -> None:
+    assert robot_with(fault, key_file).failed == [SIGNED[fault]]
+
+
+@pytest.mark.parametrize("fault", SIGNED)
+def test_a_trusting_controller_fails_its_own_item_alone(fault: str, key_file: Path) -> None:
+    assert controller_with(fault, key_file).failed == [SIGNED[fault]]
+
+
+def test_every_item_has_a_peer_that_fails_it() -> None:
+    assert {item.name for item in robot.ITEMS} - NOT_ALONE == {*ROBOT.values(), *SIGNED.values()}
+    assert {item.name for item in controller.ITEMS} - NOT_ALONE == {
+        *CONTROLLER.values(),
+        *SIGNED.values(),
+    }
+
+
+def test_nobody_there_is_said() -> None:
+    with open_endpoint("udpin://127.0.0.1:0") as free:
+        url = free.name.replace("udpin", "udpout")
+    report = conform(url, "robot", None, Patience(0.2, 0.02, 0.02))
+
+    assert not report.conforms
+    assert "no LAGLAB_TICK" in report.results[0].reason
+
+
+def test_the_report_reads_as_a_table_and_as_junit() -> None:
+    report = robot_with("compares half of the CRC")
+    suite = ElementTree.fromstring(report.junit())
+
+    assert not report.conforms
+    assert "a corrupted frame is refused" in report.table()
+    assert "the robot does not conform" in report.table()
+    assert suite.get("failures") == "1"
+    assert len(suite.findall("testcase")) == len(robot.ITEMS)
+    assert [case.get("name") for case in suite if case.find("failure") is not None] == [
+        "a corrupted frame is refused"
+    ]
+
+
+def test_an_optional_item_does_not_decide() -> None:
+    report = robot_with("does not answer pings")
+
+    assert report.failed == ["it answers a ping"]
+    assert report.conforms
