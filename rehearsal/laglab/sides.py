@@ -237,6 +237,13 @@ def station_config(scenario: Scenario) -> StationConfig:
     )
 
 
+def station_statistics(station: Station) -> dict[str, Any]:
+    """The station's own report, for the summary."""
+    n, m, times, warnings = station.report()
+    timed = {f"tick_{name}_s": value for name, value in times._asdict().items()} if times else {}
+    return {"station": {"n_seen": n, "m_seen": m, **timed, "warnings": list(warnings)}}
+
+
 @contextmanager
 def open_station(scenario: Scenario, key: Path | None = None) -> Iterator[Station]:
     """The remote station's side, its frames signed with a key."""
