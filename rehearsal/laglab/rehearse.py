@@ -1,7 +1,6 @@
 """One rehearsal: start the two sides, follow them, and keep what they leave."""
 
 import tempfile
-import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
@@ -24,8 +23,7 @@ from laglab.processes import (
     station_process,
 )
 from laglab.scenario import Scenario
-from laglab.sides import open_gateway, serve, station_config
-from laglab_controller import Station
+from laglab.sides import open_gateway, open_station, serve
 from laglab_gateway import FileRecorder, Outcome, Patience
 
 Transport = Literal["inline", "udp", "serial"]
@@ -46,22 +44,35 @@ class Ending:
 
 
 def rehearse(
-    scenario: Scenario, transport: Transport, directory: Path, progress: Callable[[int], None]
+    scenario: Scenario,
+    transport: Transport,
+    directory: Path,
+    progress: Callable[[int], None],
+    key: Path | None = None,
 ) -> Ending:
-    """Run both sides to the end; trace, log and scenario are then in ``directory``."""
+    """Run both sides to the end; trace, log and scenario are then in `directory`.
+
+    With a `key` every frame is signed, and what is not is refused.
+    """
     directory.mkdir(parents=True, exist_ok=True)
     (directory / SCENARIO_FILE).write_text(scenario.to_toml(), encoding="utf-8")
     if transport == "inline":
-        return _inline(scenario, directory, progress)
+        return _inline(scenario, directory, progress, key)
     with _gateway_url(transport) as url:
-        return _two_processes(scenario, url, directory, progress)
+        return _two_processes(scenario, url, directory, progress, key)
 
 
-def _inline(scenario: Scenario, directory: Path, progress: Callable[[int], None]) -> Ending:
+def _inline(
+    scenario: Scenario, directory: Path, progress: Callable[[int], None], key: Path | None
+) -> Ending:
     clock = LoopClock(progress)
     try:
-        with open_gateway(scenario) as gateway, closing(FileRecorder(directory)) as recorder:
-            endpoint = InlineEndpoint(Station(station_config(scenario), clock=time.monotonic_ns))
+        with (
+            open_gateway(scenario, key) as gateway,
+            open_station(scenario, key) as station,
+            closing(FileRecorder(directory)) as recorder,
+        ):
+            endpoint = InlineEndpoint(station)
             outcome, statistics = serve(scenario, gateway, endpoint, recorder, Patience(), clock)
     except SIDE_ERRORS as error:
         return Ending(None, str(error), clock.seconds, {})
@@ -84,16 +95,20 @@ def far_end(address: str) -> str:
 
 
 def _two_processes(
-    scenario: Scenario, url: str, directory: Path, progress: Callable[[int], None]
+    scenario: Scenario,
+    url: str,
+    directory: Path,
+    progress: Callable[[int], None],
+    key: Path | None,
 ) -> Ending:
     notice = scenario.silence_timeout + NOTICE_SECONDS
-    with started("gateway", gateway_process, scenario, url, directory) as gateway:
+    with started("gateway", gateway_process, scenario, url, directory, key) as gateway:
         match gateway.next_report():
             case Listening(address):
                 station_url = far_end(address)
             case report:
                 return _ending(report, [], 0.0)
-        with started("controller", station_process, scenario, station_url) as station:
+        with started("controller", station_process, scenario, station_url, key) as station:
             try:
                 return _follow(gateway, station, notice, progress)
             except KeyboardInterrupt:

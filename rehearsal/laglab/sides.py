@@ -1,7 +1,7 @@
 """The two sides of a rehearsal, each made from the scenario alone."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from laglab.scenario import Scenario
-from laglab_controller import Law, RobotModel, StationConfig
+from laglab_controller import Law, RobotModel, Station, StationConfig
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
     IDEAL,
@@ -26,10 +26,20 @@ from laglab_gateway import (
     Recorder,
     Services,
     Timesyncing,
+    Watch,
+    Watcher,
     read_link_log,
     serve_lockstep,
     serve_realtime,
     standard_parameters,
+)
+from laglab_protocol import (
+    ROBOT_COMPONENT,
+    ROBOT_SYSTEM,
+    STATION_COMPONENT,
+    STATION_SYSTEM,
+    Codec,
+    Endpoint,
 )
 
 
@@ -53,10 +63,13 @@ def robot_parameters(scenario: Scenario) -> RobotParameters:
 
 
 @contextmanager
-def open_gateway(scenario: Scenario) -> Iterator[Gateway]:
-    """The robot's side, its FMU loaded until the context ends."""
+def open_gateway(scenario: Scenario, key: Path | None = None) -> Iterator[Gateway]:
+    """The robot's side, its FMU loaded until the context ends; its frames signed with a key."""
     parameters = robot_parameters(scenario)
-    with Robot.open(scenario.fmi, parameters) as robot:
+    with (
+        Robot.open(scenario.fmi, parameters) as robot,
+        Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, key) as codec,
+    ):
         plant = FmuPlant(robot, parameters)
         config = GatewayConfig(
             command_delay=scenario.command_delay,
@@ -70,7 +83,7 @@ def open_gateway(scenario: Scenario) -> Iterator[Gateway]:
             scenario.command_delay, scenario.measurement_delay, scenario.safety
         )
         services = Services(parameters_shown, timesync=free_running)
-        yield Gateway(plant, config, link_fates(scenario), services=services)
+        yield Gateway(plant, config, link_fates(scenario), services, codec)
 
 
 DIRECTIONS: tuple[Direction, ...] = ("command", "measurement")
@@ -98,13 +111,20 @@ def serve(
     recorder: Recorder,
     patience: Patience,
     progress: Callable[[int], None],
+    watchers: Sequence[Endpoint] = (),
 ) -> tuple[Outcome, dict[str, Any]]:
     """Run the robot's side at the scenario's pace: how it ended, and what the stamps tell."""
+    watch = Watch(
+        gateway.services,
+        [Watcher(watcher, Codec(ROBOT_SYSTEM, ROBOT_COMPONENT)) for watcher in watchers],
+    )
     if scenario.pace == "lockstep":
-        outcome = serve_lockstep(gateway, endpoint, recorder, patience, progress)
+        outcome = serve_lockstep(gateway, endpoint, recorder, patience, progress, watch)
         return outcome, {"link": gateway.audit.report()}
     period = scenario.sample_time / scenario.speed
-    outcome, lateness = serve_realtime(gateway, endpoint, recorder, patience, progress, period)
+    outcome, lateness = serve_realtime(
+        gateway, endpoint, recorder, patience, progress, period, watch=watch
+    )
     link = gateway.audit.report() | {"timesync": clock_audit(gateway)}
     return outcome, {"link": link, "timing": lateness.report()}
 
@@ -154,3 +174,10 @@ def station_config(scenario: Scenario) -> StationConfig:
         initial_covariance=scenario.initial_covariance * np.eye(3),
         command_delay=scenario.command_delay,
     )
+
+
+@contextmanager
+def open_station(scenario: Scenario, key: Path | None = None) -> Iterator[Station]:
+    """The remote station's side, its frames signed with a key."""
+    with Codec(STATION_SYSTEM, STATION_COMPONENT, key) as codec:
+        yield Station(station_config(scenario), clock=time.monotonic_ns, codec=codec)

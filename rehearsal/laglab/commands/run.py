@@ -22,6 +22,10 @@ EXIT_CODES = {
     EndReason.FAILED: 1,
 }
 
+KeyOption = Annotated[
+    Path | None,
+    typer.Option("--key", metavar="FILE", help="Sign every frame; `laglab protocol keygen`."),
+]
 OutOption = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Where the results go; runs/SCENARIO otherwise."),
@@ -35,13 +39,14 @@ def run(
         Transport, typer.Option(help="What is between the two processes; inline is one process.")
     ] = "udp",
     out: OutOption = None,
+    key: KeyOption = None,
 ) -> None:
     """Rehearse SCENARIO: robot and controller, the delayed link between them, and the verdict."""
     directory = out or fresh_directory(Path("runs"), scenario.name)
     with progress_bar() as bar:
         task = bar.add_task(scenario.name, total=scenario.last_tick)
         ending = rehearse(
-            scenario, transport, directory, lambda tick: bar.update(task, completed=tick)
+            scenario, transport, directory, lambda tick: bar.update(task, completed=tick), key
         )
         if ending.outcome:
             bar.update(task, completed=ending.outcome.tick)
