@@ -20,6 +20,8 @@ from laglab_gateway import (
     GatewayConfig,
     Link,
     Outcome,
+    Parameter,
+    Parameters,
     Patience,
     RandomFates,
     RecordedFates,
@@ -62,8 +64,28 @@ def robot_parameters(scenario: Scenario) -> RobotParameters:
     )
 
 
+def shown_parameters(scenario: Scenario) -> Parameters:
+    """What a ground station reads: the gateway's own, the law's gains, the noise [SI units]."""
+    noise = scenario.measurement_variance if scenario.noise else (0.0, 0.0, 0.0)
+    others = {
+        "LAW_GAMMA": scenario.gamma,
+        "LAW_LAMBDA": scenario.lambda_,
+        "LAW_H": scenario.h,
+        "NOISE_WHEEL": scenario.wheel_noise_variance if scenario.noise else 0.0,
+        **dict(zip(("NOISE_X", "NOISE_Y", "NOISE_THETA"), noise, strict=True)),
+    }
+    return standard_parameters(
+        scenario.command_delay,
+        scenario.measurement_delay,
+        scenario.safety,
+        [Parameter(name, value) for name, value in others.items()],
+    )
+
+
 @contextmanager
-def open_gateway(scenario: Scenario, key: Path | None = None) -> Iterator[Gateway]:
+def open_gateway(
+    scenario: Scenario, key: Path | None = None, armed: bool = True
+) -> Iterator[Gateway]:
     """The robot's side, its FMU loaded until the context ends; its frames signed with a key."""
     parameters = robot_parameters(scenario)
     with (
@@ -79,10 +101,7 @@ def open_gateway(scenario: Scenario, key: Path | None = None) -> Iterator[Gatewa
             safety=scenario.safety,
         )
         free_running = Timesyncing(time.monotonic_ns) if scenario.pace == "realtime" else None
-        parameters_shown = standard_parameters(
-            scenario.command_delay, scenario.measurement_delay, scenario.safety
-        )
-        services = Services(parameters_shown, timesync=free_running)
+        services = Services(shown_parameters(scenario), armed, free_running)
         yield Gateway(plant, config, link_fates(scenario), services, codec)
 
 

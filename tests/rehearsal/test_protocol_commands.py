@@ -82,9 +82,10 @@ def test_lint_passes_our_dialect_and_names_the_faults_of_another(
 
 
 def test_generate_writes_python_that_speaks_our_dialect(laglab: Laglab, tmp_path: Path) -> None:
-    assert laglab("protocol", "generate", "--lang", "Python3", "ours.py").returncode == 0
-    program = "import ours; print(ours.MAVLink_laglab_tick_message.id)"
-    said = subprocess.check_output([sys.executable, "-c", program], cwd=tmp_path, text=True)
+    assert laglab("protocol", "generate", "--lang", "Python3", "ours").returncode == 0
+    program = "import laglab; print(laglab.MAVLink_laglab_tick_message.id)"
+    where = tmp_path / "ours"
+    said = subprocess.check_output([sys.executable, "-c", program], cwd=where, text=True)
     assert said.strip() == "52100"
 
 
