@@ -1,5 +1,10 @@
-"""Build the firmware for this computer: `python build.py [FOLDER]`, into build/ otherwise."""
+"""Build the firmware for this computer: `python build.py [FOLDER]`, into build/ otherwise.
 
+CFLAGS in the environment are added to our own.
+"""
+
+import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -17,7 +22,8 @@ def build(folder: Path) -> Path:
     program = folder / "firmware"
     compiler = [cc] if (cc := shutil.which("cc")) else [sys.executable, "-m", "ziglang", "cc"]
     sources = sorted(HERE.glob("*.c"))
-    command = [*compiler, *STRICT, "-isystem", folder / "include", *sources, "-lm", "-o", program]
+    flags = [*STRICT, *shlex.split(os.environ.get("CFLAGS", "")), "-isystem", folder / "include"]
+    command = [*compiler, *flags, *sources, "-lm", "-o", program]
     subprocess.run(command, check=True)
     return program
 

@@ -7,20 +7,25 @@
 #define SAMPLE_TIME 0.01 /* s */
 #define NO_COMMAND (-1)
 
+/* Speeds, and the stamp of the command that they come from; NO_COMMAND: standing still. */
 typedef struct {
-    double v, omega;      /* m/s, rad/s: in force on [t_k, t_{k+1}) */
-    int32_t command_tick; /* the stamp of the command that they come from; NO_COMMAND: standing still */
-    double asked_v, asked_omega;
-    uint32_t taken_at; /* the tick at which that command came into force */
+    double v, omega; /* m/s, rad/s */
+    int32_t stamp;
+} Command;
+
+typedef struct {
+    Command newest;
+    uint32_t since;   /* the tick from which on the newest command counts */
+    Command in_force; /* on [t_k, t_{k+1}) */
 } Drive;
 
 /* Standing still, until the first command. */
 Drive drive_start(void);
 
-/* A command stamped `stamp` comes into force at `tick`, unless it is stale or not finite. */
-void drive_follow(Drive *drive, uint32_t tick, int32_t stamp, double v, double omega);
+/* A command comes into force at `tick`, unless it is stale or not finite. */
+void drive_follow(Drive *drive, uint32_t tick, Command command);
 
-/* The speeds for `tick`: as commanded, or on the way to a stop when no fresh command has come for too long. */
+/* What is in force from `tick` on: the newest command, or the way to a stop when it is too long ago. */
 void drive_supervise(Drive *drive, uint32_t tick);
 
 #endif

@@ -12,8 +12,7 @@ static LinkEvent command_of(const mavlink_message_t *message) {
     if (command.target_system != ROBOT_SYSTEM || command.target_component != ROBOT_COMPONENT) {
         return (LinkEvent){.kind = LINK_NOTHING};
     }
-    return (LinkEvent){
-        .kind = LINK_COMMAND, .v = command.v, .omega = command.omega, .stamp = (int32_t)command.tick};
+    return (LinkEvent){.kind = LINK_COMMAND, .command = {command.v, command.omega, (int32_t)command.tick}};
 }
 
 LinkEvent link_read(uint8_t byte) {
@@ -38,10 +37,10 @@ LinkEvent link_read(uint8_t byte) {
     }
 }
 
-size_t link_write_tick(uint8_t *buffer, uint32_t tick, Pose seen, const Drive *drive) {
+size_t link_write_tick(uint8_t *buffer, uint32_t tick, Pose seen, Command in_force) {
     mavlink_message_t message;
     mavlink_msg_laglab_measurement_pack(ROBOT_SYSTEM, ROBOT_COMPONENT, &message, seen.x, seen.y, seen.theta,
-                                        drive->v, drive->omega, tick, drive->command_tick);
+                                        in_force.v, in_force.omega, tick, in_force.stamp);
     const size_t size = mavlink_msg_to_send_buffer(buffer, &message);
     mavlink_msg_laglab_tick_pack(ROBOT_SYSTEM, ROBOT_COMPONENT, &message, tick, 1);
     return size + mavlink_msg_to_send_buffer(buffer + size, &message);

@@ -13,16 +13,15 @@
 /* What a station can ask of the robot. */
 typedef struct {
     enum { LINK_NOTHING, LINK_BEGIN, LINK_COMMAND, LINK_END } kind;
-    double v, omega; /* of a command */
-    int32_t stamp;   /* of a command */
-    uint8_t reason;  /* of an end */
+    Command command;
+    uint8_t reason; /* of an end */
 } LinkEvent;
 
 /* Take one byte; what it completes, mostly nothing. */
 LinkEvent link_read(uint8_t byte);
 
-/* The frames of one tick, in one piece: z_k with the speeds in force before it, and the tick. Their size. */
-size_t link_write_tick(uint8_t *buffer, uint32_t tick, Pose seen, const Drive *drive);
+/* The frames of one tick, in one piece: z_k with the command in force before it, and the tick. Their size. */
+size_t link_write_tick(uint8_t *buffer, uint32_t tick, Pose seen, Command in_force);
 
 /* The answer to an end. Its size. */
 size_t link_write_end(uint8_t *buffer, uint32_t tick, uint8_t reason);

@@ -26,7 +26,7 @@ typedef struct {
     Drive drive;
 } Robot;
 
-/* Raw, 8N1, and without waiting: bytes come and go as they are. */
+/* Raw, 8N1, and without waiting: bytes come and go as they are. What came earlier is forgotten. */
 static int open_port(const char *device) {
     const int port = open(device, O_RDWR | O_NOCTTY | O_NONBLOCK);
     struct termios settings;
@@ -35,7 +35,7 @@ static int open_port(const char *device) {
     }
     cfmakeraw(&settings);
     cfsetspeed(&settings, B115200);
-    return tcsetattr(port, TCSANOW, &settings) == 0 ? port : -1;
+    return tcsetattr(port, TCSAFLUSH, &settings) == 0 ? port : -1;
 }
 
 /* A tick that finds no room is dropped, as a UART would. */
@@ -54,7 +54,7 @@ static bool obey(Robot *robot, LinkEvent event) {
         return true;
     case LINK_COMMAND:
         if (robot->running) {
-            drive_follow(&robot->drive, robot->tick, event.stamp, event.v, event.omega);
+            drive_follow(&robot->drive, robot->tick, event.command);
         }
         return true;
     case LINK_END:
@@ -80,17 +80,15 @@ static bool receive(Robot *robot) {
     return size < 0 && errno == EAGAIN;
 }
 
-/* Tick k: say where the robot is; from here on the newest command is in force; drive to k + 1. */
+/* Tick k: say where the robot is; the newest command comes into force; drive to k + 1. */
 static bool tick(Robot *robot) {
     uint8_t buffer[LINK_LARGEST];
-    const size_t size = link_write_tick(buffer, robot->tick, body_measure(&robot->body), &robot->drive);
-    if (!send(robot, buffer, size) || !receive(robot)) {
-        return false;
-    }
+    const Pose seen = body_measure(&robot->body);
+    const size_t size = link_write_tick(buffer, robot->tick, seen, robot->drive.in_force);
     drive_supervise(&robot->drive, robot->tick);
-    body_drive(&robot->body, robot->drive.v, robot->drive.omega, SAMPLE_TIME);
+    body_drive(&robot->body, robot->drive.in_force.v, robot->drive.in_force.omega, SAMPLE_TIME);
     robot->tick++;
-    return true;
+    return send(robot, buffer, size);
 }
 
 /* Sleep until an instant that is `seconds` after the last one: being late once makes nothing late after it. */
@@ -105,7 +103,7 @@ static void sleep_on(struct timespec *deadline, double seconds) {
 static void run(Robot *robot, double speed) {
     struct timespec deadline;
     clock_gettime(CLOCK_MONOTONIC, &deadline);
-    while (robot->running ? tick(robot) : receive(robot)) {
+    while (receive(robot) && (!robot->running || tick(robot))) {
         sleep_on(&deadline, SAMPLE_TIME / speed);
     }
 }

@@ -10,6 +10,9 @@ from laglab_gateway.recorder import Recorder
 from laglab_gateway.side import Outcome, RobotSide, from_station
 from laglab_gateway.watch import Watch
 
+TIMESYNC_TICKS = 10
+"""How often the station's clock is asked for."""
+
 END_TRIES = 5
 """A lost END only costs the station its silence timeout, so a few tries are enough."""
 
@@ -20,8 +23,12 @@ class Patience:
 
     repeat_after: float = 0.1
     silence: float = 3.0
-    robot_silence: float = 1.0
     connect: float | None = None
+
+    @property
+    def robot_silence(self) -> float:
+        """Of a real robot: shorter, so that the station hears of it before it gives us up."""
+        return self.silence / 3
 
 
 class Link(Protocol):
@@ -85,6 +92,12 @@ class Conversation:
         """Write down what was before, look after everybody else."""
         self._recorder.flush()
         self._look_around()
+
+    def ask_time(self) -> None:
+        """Every so many ticks: how far is the station's clock away?"""
+        due = self._gateway.tick % TIMESYNC_TICKS == 0
+        if due and (question := self._gateway.ask_time()):
+            self.send(question)
 
     def listen(self, timeout: float) -> None:
         """Take what arrives, for at most `timeout` [s]."""

@@ -17,9 +17,6 @@ from laglab_gateway.side import Outcome
 from laglab_gateway.watch import Watch
 from laglab_protocol import EndReason
 
-TIMESYNC_TICKS = 10
-"""How often the station's clock is asked for."""
-
 LONGEST_WAIT = 0.04
 """[s] Longer waits are left to a kernel timer that is too coarse for a deadline."""
 
@@ -80,8 +77,7 @@ def serve_realtime(
                 gateway.announce(f"cannot keep up: tick {gateway.tick} is {late:.3f} s late")
             conversation.send_tick()
             gateway.settle()
-            if gateway.tick % TIMESYNC_TICKS == 0:
-                conversation.send(gateway.ask_time())
+            conversation.ask_time()
             answer = _listen_until(deadline + period, gateway, conversation)
             recorder.timing(TimingRow(gateway.tick, late, answer))
             progress(conversation.finish_tick())

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from laglab_gateway.fates import Fates
-from laglab_gateway.services import RobotState, Services, standard_parameters
+from laglab_gateway.services import RobotState, Services
 from laglab_gateway.side import GatewayConfig, Outcome, RobotSide, reason_of
 from laglab_gateway.timeline import Direction
 from laglab_gateway.trace import TraceRow
@@ -55,12 +55,10 @@ class Relay(RobotSide):
     def __init__(
         self,
         config: GatewayConfig,
+        services: Services,
         fates: Mapping[Direction, Fates] | None = None,
-        services: Services | None = None,
         codec: Codec | None = None,
     ) -> None:
-        n, m = config.command_delay, config.measurement_delay
-        services = services or Services(standard_parameters(n, m, config.safety), placeable=False)
         super().__init__(config, services, fates, codec)
         self.under_way = False
         self.robot_end: End | None = None

@@ -84,10 +84,11 @@ def serve_remote(
     station: Endpoint,
     recorder: Recorder,
     patience: Patience,
-    watch: Watch,
     progress: Callable[[int], None],
+    watch: Watch | None = None,
 ) -> Outcome:
     """Relay between robot and station to the run's last tick; `progress` is told of each.
+    Those who `watch` are looked after meanwhile.
 
     However it ends, both sides are told, the robot first.
 
@@ -134,3 +135,4 @@ def _relay_ticks(
             return
         conversation.check_silence()
         conversation.send_tick()
+        conversation.ask_time()

@@ -18,7 +18,7 @@ from laglab.commands import (
 from laglab.errors import LaglabError, RunError, ScenarioError
 from laglab.processes import SIDE_ERRORS
 from laglab_controller import StationError
-from laglab_gateway import StationSilentError
+from laglab_gateway import RobotSilentError, StationSilentError
 from laglab_protocol import FarEndGoneError, FarEndStalledError
 
 app = typer.Typer(
@@ -40,7 +40,13 @@ app.add_typer(fmu.app, name="fmu")
 app.add_typer(protocol.app, name="protocol")
 app.command("conform")(protocol.conform)
 
-LINK_LOST = (StationError, StationSilentError, FarEndGoneError, FarEndStalledError)
+LINK_LOST = (
+    StationError,
+    StationSilentError,
+    RobotSilentError,
+    FarEndGoneError,
+    FarEndStalledError,
+)
 """What ends a run that had begun; the other errors of a side are the user's to mend."""
 
 

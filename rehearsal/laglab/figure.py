@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from laglab.errors import RunError
+from laglab.pose import is_measured, robot_pose
 from laglab.scenario import Scenario
 from laglab_gateway import Trace
 
@@ -44,22 +45,28 @@ def title(scenario: Scenario) -> str:
 
 def draw_path(axes: Axes, trace: Trace, scenario: Scenario) -> None:
     """The robot's path, from its start to the goal's pose."""
-    axes.plot(trace["x"], trace["y"], label="path")
-    axes.plot(trace["x"][0], trace["y"][0], "o", label="start")
+    pose = robot_pose(trace)
+    axes.plot(pose[:, 0], pose[:, 1], label="path")
+    axes.plot(pose[0, 0], pose[0, 1], "o", label="start")
     x, y, _ = scenario.goal
     axes.plot(x, y, "*", markersize=12, label="goal")
-    axes.set(xlabel="x [m]", ylabel="y [m]", title="path", aspect="equal", adjustable="datalim")
+    axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal", adjustable="datalim")
+    axes.set_title("path" + _as_seen(trace))
     axes.legend()
     axes.grid(alpha=0.3)
 
 
 def draw_heading(axes: Axes, trace: Trace, scenario: Scenario) -> None:
     """Heading over time, and the goal's."""
-    axes.plot(trace["time"], trace["theta"])
+    axes.plot(trace["time"], robot_pose(trace)[:, 2])
     axes.axhline(scenario.goal[2], color="grey", linestyle=":", label="goal")
-    axes.set(xlabel="t [s]", ylabel="θ [rad]", title="heading")
+    axes.set(xlabel="t [s]", ylabel="θ [rad]", title="heading" + _as_seen(trace))
     axes.legend()
     axes.grid(alpha=0.3)
+
+
+def _as_seen(trace: Trace) -> str:
+    return ", as measured" if is_measured(trace) else ""
 
 
 def draw_speeds(axes: Axes, trace: Trace) -> None:

@@ -12,7 +12,7 @@ from time import monotonic
 from typing import Any
 
 from laglab.scenario import Scenario
-from laglab.sides import open_gateway, open_station, serve
+from laglab.sides import Setup, open_robot, open_station
 from laglab_controller import StationError, run_station
 from laglab_fmu import FmuError
 from laglab_gateway import FileRecorder, GatewayError, Outcome, Patience
@@ -79,29 +79,29 @@ class LoopClock:
 
 
 def gateway_process(
-    scenario: Scenario, url: str, directory: Path, key: Path | None, reports: Connection
+    scenario: Scenario, url: str, directory: Path, setup: Setup, reports: Connection
 ) -> None:
     """The robot's side, from opening the endpoint to the last report; SIGTERM ends it in order."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     clock = LoopClock(lambda tick: reports.send(Progress(tick, clock.seconds)))
     try:
         with (
-            open_gateway(scenario, key) as gateway,
+            open_robot(scenario, setup) as serve,
             closing(FileRecorder(directory)) as recorder,
             open_endpoint(url) as endpoint,
         ):
             reports.send(Listening(endpoint.name))
             patience = Patience(silence=scenario.silence_timeout, connect=30.0)
-            outcome, statistics = serve(scenario, gateway, endpoint, recorder, patience, clock)
+            outcome, statistics = serve(endpoint, recorder, patience, clock)
         reports.send(Finished(outcome, clock.seconds, statistics))
     except SIDE_ERRORS as error:
         reports.send(Failed(str(error)))
 
 
-def station_process(scenario: Scenario, url: str, key: Path | None, reports: Connection) -> None:
+def station_process(scenario: Scenario, url: str, setup: Setup, reports: Connection) -> None:
     """The remote station's side."""
     try:
-        with open_endpoint(url) as endpoint, open_station(scenario, key) as station:
+        with open_endpoint(url) as endpoint, open_station(scenario, setup.key) as station:
             run_station(station, endpoint, scenario.silence_timeout)
     except SIDE_ERRORS as error:
         reports.send(Failed(str(error)))

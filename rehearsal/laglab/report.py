@@ -64,13 +64,14 @@ def results_table(summary: dict[str, Any]) -> Table:
     final = summary["final"]
     estimated = summary.get("compare", {summary["estimator"]: summary["rms_error"]})
     factor = summary["real_time_factor"]
+    seen = " (measured)" if summary["pose"] == "measured" else ""
     rows = {
         "scenario": f"{summary['scenario']} (seed {summary['seed']}, {summary['transport']})",
         "estimator": summary["estimator"],
         "delays n, m": delays,
-        "pose error at the end": f"ρ {final['rho']:.3g} m, θ {final['theta_error']:.3g} rad",
+        f"pose error at the end{seen}": f"ρ {final['rho']:.3g} m, θ {final['theta_error']:.3g} rad",
         "speeds at the end": f"v {final['v']:.3g} m/s, ω {final['omega']:.3g} rad/s",
-        **{f"RMS error of {name}": _errors(errors) for name, errors in estimated.items()},
+        **{f"RMS error of {name}{seen}": _errors(errors) for name, errors in estimated.items()},
         **_link_rows(summary.get("link", {})),
         **_timing_row(summary.get("timing")),
         "speed": f"{summary['ticks']} ticks in {summary['wall_time_s']:.2f} s"

@@ -3,6 +3,8 @@
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +28,7 @@ from laglab_gateway import (
     RandomFates,
     RecordedFates,
     Recorder,
+    Relay,
     Services,
     Timesyncing,
     Watch,
@@ -33,6 +36,7 @@ from laglab_gateway import (
     read_link_log,
     serve_lockstep,
     serve_realtime,
+    serve_remote,
     standard_parameters,
 )
 from laglab_protocol import (
@@ -42,7 +46,20 @@ from laglab_protocol import (
     STATION_SYSTEM,
     Codec,
     Endpoint,
+    open_endpoint,
 )
+
+
+@dataclass(frozen=True)
+class Setup:
+    """What a run needs besides its scenario."""
+
+    plant: str | None = None
+    """The address of the real robot; None: the FMU."""
+    key: Path | None = None
+    """The file of the key that signs every frame between gateway and station."""
+    armed: bool = True
+    """Whether the robot may move before a ground station says so."""
 
 
 def robot_parameters(scenario: Scenario) -> RobotParameters:
@@ -82,6 +99,25 @@ def shown_parameters(scenario: Scenario) -> Parameters:
     )
 
 
+def gateway_config(scenario: Scenario) -> GatewayConfig:
+    """What the link and the robot's side do."""
+    return GatewayConfig(
+        command_delay=scenario.command_delay,
+        measurement_delay=scenario.measurement_delay,
+        last_tick=scenario.last_tick,
+        sample_time=scenario.sample_time,
+        safety=scenario.safety,
+    )
+
+
+def robot_services(
+    scenario: Scenario, free_running: bool, placeable: bool = True, armed: bool = True
+) -> Services:
+    """What ground stations find; where time is simulated, no clocks are compared."""
+    timesync = Timesyncing(time.monotonic_ns) if free_running else None
+    return Services(shown_parameters(scenario), armed, timesync, placeable=placeable)
+
+
 @contextmanager
 def open_gateway(
     scenario: Scenario, key: Path | None = None, armed: bool = True
@@ -93,16 +129,9 @@ def open_gateway(
         Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, key) as codec,
     ):
         plant = FmuPlant(robot, parameters)
-        config = GatewayConfig(
-            command_delay=scenario.command_delay,
-            measurement_delay=scenario.measurement_delay,
-            last_tick=scenario.last_tick,
-            sample_time=scenario.sample_time,
-            safety=scenario.safety,
-        )
-        free_running = Timesyncing(time.monotonic_ns) if scenario.pace == "realtime" else None
-        services = Services(shown_parameters(scenario), armed, free_running)
-        yield Gateway(plant, config, link_fates(scenario), services, codec)
+        free_running = scenario.pace == "realtime"
+        services = robot_services(scenario, free_running, armed=armed)
+        yield Gateway(plant, gateway_config(scenario), link_fates(scenario), services, codec)
 
 
 DIRECTIONS: tuple[Direction, ...] = ("command", "measurement")
@@ -133,10 +162,7 @@ def serve(
     watchers: Sequence[Endpoint] = (),
 ) -> tuple[Outcome, dict[str, Any]]:
     """Run the robot's side at the scenario's pace: how it ended, and what the stamps tell."""
-    watch = Watch(
-        gateway.services,
-        [Watcher(watcher, Codec(ROBOT_SYSTEM, ROBOT_COMPONENT)) for watcher in watchers],
-    )
+    watch = _watch(gateway.services, watchers)
     if scenario.pace == "lockstep":
         outcome = serve_lockstep(gateway, endpoint, recorder, patience, progress, watch)
         return outcome, {"link": gateway.audit.report()}
@@ -144,13 +170,18 @@ def serve(
     outcome, lateness = serve_realtime(
         gateway, endpoint, recorder, patience, progress, period, watch=watch
     )
-    link = gateway.audit.report() | {"timesync": clock_audit(gateway)}
+    link = gateway.audit.report() | {"timesync": clock_audit(gateway.services)}
     return outcome, {"link": link, "timing": lateness.report()}
 
 
-def clock_audit(gateway: Gateway) -> dict[str, float] | None:
+def _watch(services: Services, watchers: Sequence[Endpoint]) -> Watch:
+    codecs = (Codec(ROBOT_SYSTEM, ROBOT_COMPONENT) for _ in watchers)
+    return Watch(services, list(map(Watcher, watchers, codecs)))
+
+
+def clock_audit(services: Services) -> dict[str, float] | None:
     """What TIMESYNC found: the station's clock less ours, and the way there and back [s]."""
-    timesync = gateway.services.timesync
+    timesync = services.timesync
     if timesync is None or not timesync.samples:
         return None
     offsets, round_trips = np.array(timesync.samples).T * 1e-9
@@ -161,6 +192,43 @@ def clock_audit(gateway: Gateway) -> dict[str, float] | None:
         "round_trip_p99_s": float(p99),
         "samples": len(offsets),
     }
+
+
+def serve_real(
+    scenario: Scenario,
+    robot: Endpoint,
+    codec: Codec,
+    armed: bool,
+    endpoint: Endpoint,
+    recorder: Recorder,
+    patience: Patience,
+    progress: Callable[[int], None],
+    watchers: Sequence[Endpoint] = (),
+) -> tuple[Outcome, dict[str, Any]]:
+    """Be the link in front of a real robot, at its own pace; as `serve`."""
+    services = robot_services(scenario, free_running=True, placeable=False, armed=armed)
+    relay = Relay(gateway_config(scenario), services, link_fates(scenario), codec)
+    watch = _watch(services, watchers)
+    outcome = serve_remote(relay, robot, endpoint, recorder, patience, progress, watch)
+    return outcome, {"link": relay.audit.report() | {"timesync": clock_audit(services)}}
+
+
+Serve = Callable[..., tuple[Outcome, dict[str, Any]]]
+"""`serve` or `serve_real`, given all but what is on the station's side."""
+
+
+@contextmanager
+def open_robot(scenario: Scenario, setup: Setup) -> Iterator[Serve]:
+    """The robot's side: the FMU, or the real robot."""
+    if setup.plant is None:
+        with open_gateway(scenario, setup.key, setup.armed) as gateway:
+            yield partial(serve, scenario, gateway)
+    else:
+        with (
+            open_endpoint(setup.plant) as robot,
+            Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, setup.key) as codec,
+        ):
+            yield partial(serve_real, scenario, robot, codec, setup.armed)
 
 
 def robot_model(scenario: Scenario) -> RobotModel:

@@ -1,9 +1,10 @@
-"""A rover in a process of its own, for the programs of others to find."""
+"""Robots in processes of their own: a rover for others to find, and the firmware in C."""
 
+import os
 import socket
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -26,3 +27,44 @@ def rover(port: int) -> Iterator[subprocess.Popen[bytes]]:
         yield process
         assert process.poll() is None, "the rover died"
         process.kill()
+
+
+FIRMWARE = Path(__file__).parents[2] / "examples" / "firmware"
+
+
+@pytest.fixture(scope="session")
+def firmware(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The example's program, built as its README says, and watched for undefined behaviour."""
+    folder = tmp_path_factory.mktemp("firmware")
+    subprocess.run(
+        [sys.executable, FIRMWARE / "build.py", folder],
+        env=os.environ | {"CFLAGS": "-fsanitize=undefined -fno-sanitize-recover"},
+        check=True,
+        timeout=50,
+    )
+    return folder / "firmware"
+
+
+Start = Callable[..., "subprocess.Popen[str]"]
+
+
+@pytest.fixture
+def start(tmp_path: Path) -> Iterator[Start]:
+    """Start a program in the background; whatever still runs at the end is ended."""
+    running: list[subprocess.Popen[str]] = []
+
+    def call(*command: object) -> "subprocess.Popen[str]":
+        process = subprocess.Popen(
+            list(map(str, command)),
+            cwd=tmp_path,
+            stderr=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        running.append(process)
+        return process
+
+    yield call
+    for process in running:
+        process.kill()
+        process.communicate()

@@ -28,6 +28,8 @@ WRONG = [
     (["run", "fig6", "--colour", "red"], "--colour"),
     (["gateway", "fig6", "--endpoint", "smoke://signals"], "smoke"),
     (["controller", "fig6", "--endpoint", "serial:///dev/ttyNONE9:57600"], "/dev/ttyNONE9"),
+    (["run", "lab", "--transport", "inline", "--plant", "pty://p"], "--plant: a real robot does"),
+    (["gateway", "lab", "--plant", "/dev/ttyNONE9,57600"], "/dev/ttyNONE9"),
     (["compare", "nowhere"], "nowhere"),
 ]
 

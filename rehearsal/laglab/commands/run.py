@@ -7,11 +7,12 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
-from laglab.errors import RunError
+from laglab.errors import RunError, ScenarioError
 from laglab.options import on_scenario
 from laglab.rehearse import Ending, Transport, rehearse
 from laglab.report import results_table, warnings, write_results
 from laglab.scenario import Scenario
+from laglab.sides import Setup
 from laglab_gateway import TRACE_FILE, Trace, TraceError, read_trace
 from laglab_protocol import EndReason
 
@@ -25,6 +26,13 @@ EXIT_CODES = {
 KeyOption = Annotated[
     Path | None,
     typer.Option("--key", metavar="FILE", help="Sign every frame; `laglab protocol keygen`."),
+]
+PlantOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="URL",
+        help="The real robot's link, such as serial:///dev/ttyX:BAUD: its clock sets the pace.",
+    ),
 ]
 OutOption = Annotated[
     Path | None,
@@ -40,13 +48,17 @@ def run(
     ] = "udp",
     out: OutOption = None,
     key: KeyOption = None,
+    plant: PlantOption = None,
 ) -> None:
     """Rehearse SCENARIO: robot and controller, the delayed link between them, and the verdict."""
+    if plant is not None and transport == "inline":
+        raise ScenarioError("--plant: a real robot does not wait: take --transport udp or serial")
+    setup = Setup(plant, key)
     directory = out or fresh_directory(Path("runs"), scenario.name)
     with progress_bar() as bar:
         task = bar.add_task(scenario.name, total=scenario.last_tick)
         ending = rehearse(
-            scenario, transport, directory, lambda tick: bar.update(task, completed=tick), key
+            scenario, transport, directory, lambda tick: bar.update(task, completed=tick), setup
         )
         if ending.outcome:
             bar.update(task, completed=ending.outcome.tick)

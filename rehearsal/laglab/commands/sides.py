@@ -8,10 +8,10 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from laglab.commands.run import EXIT_CODES, KeyOption, progress_bar
+from laglab.commands.run import EXIT_CODES, KeyOption, PlantOption, progress_bar
 from laglab.options import on_scenario
 from laglab.scenario import Scenario
-from laglab.sides import open_gateway, open_station, serve
+from laglab.sides import Setup, open_robot, open_station
 from laglab_controller import run_station
 from laglab_gateway import FileRecorder, NoRecorder, Patience
 from laglab_protocol import Endpoint, EndReason, open_endpoint, refuse_open_door
@@ -38,6 +38,7 @@ def gateway(
         Path | None,
         typer.Option("--out", metavar="DIR", help="Where trace.csv and robot.tlog go."),
     ] = None,
+    plant: PlantOption = None,
     key: KeyOption = None,
     unsigned: UnsignedOption = False,
     disarmed: Annotated[
@@ -47,7 +48,7 @@ def gateway(
     """Be the robot's side of SCENARIO: wait for a controller, run to the end."""
     console = Console(stderr=True)
     with (
-        open_gateway(scenario, key, armed=not disarmed) as core,
+        open_robot(scenario, Setup(plant, key, armed=not disarmed)) as serve,
         closing(FileRecorder(out) if out else NoRecorder()) as recorder,
         open_endpoint(endpoint) as link,
         _watchers(watch or [], unsigned) as watchers,
@@ -58,8 +59,6 @@ def gateway(
         with progress_bar() as bar:
             task = bar.add_task(scenario.name, total=scenario.last_tick)
             outcome, _ = serve(
-                scenario,
-                core,
                 link,
                 recorder,
                 Patience(silence=scenario.silence_timeout),

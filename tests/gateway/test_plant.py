@@ -1,0 +1,253 @@
+"""The real robot in the same place: our commands, each a process, in front of the robot in C."""
+
+import json
+import re
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+from laglab_fmu import Robot, RobotParameters
+from laglab_gateway import (
+    FmuPlant,
+    Gateway,
+    GatewayConfig,
+    NoRecorder,
+    Outcome,
+    Patience,
+    Relay,
+    RobotSilentError,
+    Safety,
+    Services,
+    Trace,
+    read_trace,
+    serve_realtime,
+    serve_remote,
+    standard_parameters,
+)
+from laglab_protocol import (
+    STATION_COMPONENT,
+    STATION_SYSTEM,
+    Command,
+    End,
+    EndReason,
+    Heartbeat,
+    Measurement,
+    Receiver,
+    Sender,
+    Tick,
+    open_endpoint,
+    read_tlog,
+)
+
+Process = Any
+Start = Callable[..., Process]
+LAGLAB = (sys.executable, "-m", "laglab")
+SPEED = 4
+N, M = 10, 20
+
+
+class Rig(NamedTuple):
+    gateway: Process
+    station: Process
+    robot: Process
+
+
+def port_of(gateway: Process) -> str:
+    found = re.search(r"listening on udpin://127\.0\.0\.1:(\d+)", gateway.stderr.readline())
+    assert found
+    return found[1]
+
+
+@pytest.fixture
+def rig(start: Start, firmware: Path, tmp_path: Path) -> Callable[..., Rig]:
+    """The scenario `lab`: gateway, controller, and the robot on the gateway's pty."""
+
+    def call(*options: str) -> Rig:
+        lab = ("lab", "-n", str(N), "-m", str(M), *options)
+        plant = ("--plant", f"pty://{tmp_path}/port", "--out", "run")
+        gateway = start(*LAGLAB, "gateway", *lab, *plant, "--endpoint", "udpin://127.0.0.1:0")
+        address = f"udpout://127.0.0.1:{port_of(gateway)}"
+        robot = start(firmware, "--speed", SPEED, tmp_path / "port")
+        return Rig(gateway, start(*LAGLAB, "controller", *lab, "--endpoint", address), robot)
+
+    return call
+
+
+def wait_until(tmp_path: Path, condition: Callable[[Trace], bool]) -> None:
+    """Until the trace has rows that fulfil the condition."""
+    path = tmp_path / "run" / "trace.csv"
+    deadline = time.monotonic() + 20
+    while time.monotonic() < deadline:
+        if path.exists() and path.read_bytes().count(b"\n") > 2 and condition(read_trace(path)):
+            return
+        time.sleep(0.02)
+    raise AssertionError("the robot does not get there")
+
+
+def is_driving(trace: Trace) -> bool:
+    return bool(trace["v"][-1] > 0.5)
+
+
+def ended(process: Process, code: int) -> str:
+    """Its standard error, once it has ended as it should."""
+    _, errors = process.communicate(timeout=20)
+    assert process.returncode == code, errors
+    assert "Traceback" not in errors
+    return str(errors)
+
+
+def assert_robot_let_go(robot: Process) -> None:
+    assert "the far end is gone" in ended(robot, 1)
+
+
+def test_the_same_controller_stabilises_a_real_robot(
+    rig: Callable[..., Rig], tmp_path: Path
+) -> None:
+    gateway, station, robot = rig("--duration", "12")
+    assert "completed at tick 1200" in ended(gateway, 0)
+    ended(station, 0)
+    assert_robot_let_go(robot)
+    assert not (tmp_path / "port").is_symlink()
+
+    trace = read_trace(tmp_path / "run" / "trace.csv")
+    assert trace["tick"].tolist() == list(range(1201))
+    for axis, there in (("x", -3.0), ("y", -3.0), ("theta", 0.0)):
+        assert np.isnan(trace[axis]).all(), "nobody knows the true pose"
+        assert trace[f"{axis}_meas"][:10].mean() == pytest.approx(there, abs=0.02)
+        assert trace[f"{axis}_meas"][-100:].mean() == pytest.approx(0.0, abs=0.05)
+    assert_the_stamps_tell_the_delays(tmp_path / "run" / "robot.tlog")
+
+
+def assert_the_stamps_tell_the_delays(log: Path) -> None:
+    """By the frames on the station's link: s and k are the robot's, the echo is its word."""
+    messages = [frame.message for _, frame in read_tlog(log)]
+    tick, measured, echoed = 0, set(), {}
+    for message in reversed(messages):
+        match message:
+            case Tick():
+                tick = message.tick
+            case Measurement():
+                measured.add(tick - message.tick)
+                echoed[message.command_tick] = message.tick - 1 - message.command_tick
+    assert measured == {M}
+    in_force_after = [delay for stamp, delay in echoed.items() if stamp >= 0]
+    # An answer that comes after the robot's next tick, on a busy machine, is that much later.
+    assert min(in_force_after) == N
+    assert {type(message) for message in messages} > {Command, Measurement, Tick, End}
+
+
+def test_a_run_with_a_real_robot_says_that_its_pose_is_measured(
+    start: Start, firmware: Path, tmp_path: Path
+) -> None:
+    port = tmp_path / "port"
+    plant = ("--plant", f"pty://{port}", "--duration", "2", "--out", "run")
+    run = start(*LAGLAB, "run", "lab", *plant)
+    while not port.is_symlink():
+        assert run.poll() is None
+        time.sleep(0.02)
+    robot = start(firmware, "--speed", SPEED, port)
+    said, errors = run.communicate(timeout=30)
+    assert run.returncode == 0, errors
+    assert "as measured" in said
+    assert_robot_let_go(robot)
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text())
+    assert (summary["pose"], summary["ticks"]) == ("measured", 200)
+    assert summary["final"]["rho"] > 2
+    assert summary["rms_error"]["x"] < 0.03
+    link = summary["link"]
+    assert link["measurement"]["measured"]["mean"] == M
+    assert link["command"]["measured"]["min"] == N
+    assert link["timesync"]["samples"] > 0
+    assert (tmp_path / "run" / "figure.png").exists()
+
+
+def test_a_dead_robot_is_named_by_its_link_and_the_station_is_told(
+    rig: Callable[..., Rig], tmp_path: Path
+) -> None:
+    gateway, station, robot = rig("--duration", "600")
+    wait_until(tmp_path, is_driving)
+    robot.kill()
+    killed = time.monotonic()
+    errors = ended(gateway, 4)
+    assert time.monotonic() - killed < 4
+    last = int(read_trace(tmp_path / "run" / "trace.csv")["tick"][-1]) + 1
+    assert f"pty://{tmp_path}/port: the robot has been silent since its tick {last}" in errors
+    assert ended(station, 1)
+
+
+def test_a_dead_station_lets_the_robot_stop_by_its_own_failsafe(
+    rig: Callable[..., Rig], tmp_path: Path
+) -> None:
+    gateway, station, robot = rig("--duration", "600")
+    wait_until(tmp_path, is_driving)
+    station.kill()
+    assert "the controller has been silent since tick" in ended(gateway, 4)
+    assert_robot_let_go(robot)
+    trace = read_trace(tmp_path / "run" / "trace.csv")
+    last_sent = int(trace["tick"][np.isfinite(trace["v_sent"])][-1])
+    v = trace["v"][last_sent + N : last_sent + N + 150]
+    assert v[0] > 0.5
+    assert (v[:40] == v[0]).all()
+    assert (np.diff(v[55:95]) < 0).all(), "a ramp, not a jump"
+    assert (v[105:] == 0).all()
+    assert np.ptp(trace["x_meas"][last_sent + N + 110 :]) < 0.1, "it stands"
+
+
+@pytest.fixture
+def gateway_as_robot() -> Iterator[tuple[str, "Future[Outcome]"]]:
+    """Our own gateway in real time, as a robot on UDP: its address, and its outcome to come."""
+    parameters = RobotParameters(start=(-3.0, -3.0, 0.0))
+    config = GatewayConfig(0, 0, 6000, parameters.sample_time)
+
+    def drive() -> Outcome:
+        with Robot.open(3, parameters) as robot:
+            gateway = Gateway(FmuPlant(robot, parameters), config)
+            patience = Patience(silence=20.0, connect=20.0)
+            recorder, period = NoRecorder(), parameters.sample_time
+            served = serve_realtime(gateway, endpoint, recorder, patience, lambda _: None, period)
+            return served[0]
+
+    with open_endpoint("udpin://127.0.0.1:0") as endpoint, ThreadPoolExecutor(1) as thread:
+        yield endpoint.name.replace("udpin", "udpout"), thread.submit(drive)
+
+
+def test_ctrl_c_reaches_both_sides(
+    start: Start, tmp_path: Path, gateway_as_robot: tuple[str, "Future[Outcome]"]
+) -> None:
+    address, robot = gateway_as_robot
+    lab = ("lab", "--duration", "600")
+    plant = ("--plant", address, "--out", "run")
+    gateway = start(*LAGLAB, "gateway", *lab, *plant, "--endpoint", "udpin://127.0.0.1:0")
+    address = f"udpout://127.0.0.1:{port_of(gateway)}"
+    station = start(*LAGLAB, "controller", *lab, "--endpoint", address)
+    wait_until(tmp_path, is_driving)
+    gateway.send_signal(signal.SIGINT)
+    assert "interrupted at tick" in ended(gateway, 130)
+    ended(station, 130)
+    assert robot.result(timeout=5).reason is EndReason.INTERRUPTED
+
+
+def test_a_robot_that_never_speaks_is_named(tmp_path: Path) -> None:
+    services = Services(standard_parameters(1, 1, Safety()), placeable=False)
+    relay = Relay(GatewayConfig(1, 1, 100, 0.01), services)
+    link = f"pty://{tmp_path}/port"
+    with (
+        open_endpoint(link) as robot,
+        open_endpoint("udpin://127.0.0.1:0") as endpoint,
+        open_endpoint(endpoint.name.replace("udpin", "udpout")) as station,
+    ):
+        station.send(Sender(STATION_SYSTEM, STATION_COMPONENT).frame(Heartbeat(0, 6, 8, 0, 4, 3)))
+        with pytest.raises(RobotSilentError, match="the robot never spoke") as silent:
+            serve_remote(
+                relay, robot, endpoint, NoRecorder(), Patience(silence=0.9), lambda _: None
+            )
+        assert link in str(silent.value)
+        heard = Receiver().receive(station.receive(0.1))
+        assert End(0, EndReason.FAILED) in [frame.message for frame in heard]

@@ -1,0 +1,248 @@
+"""The relay's core between a robot and a station that are made of the codec alone."""
+
+from itertools import count
+
+import numpy as np
+import pytest
+
+from laglab_gateway import (
+    Event,
+    GatewayConfig,
+    Impairments,
+    Outcome,
+    RandomFates,
+    Relay,
+    Safety,
+    Services,
+    TraceRow,
+    standard_parameters,
+)
+from laglab_protocol import (
+    NO_COMMAND,
+    ROBOT_COMPONENT,
+    ROBOT_SYSTEM,
+    STATION_COMPONENT,
+    STATION_SYSTEM,
+    Command,
+    CommandAck,
+    CommandLong,
+    End,
+    EndReason,
+    Heartbeat,
+    Measurement,
+    Message,
+    Receiver,
+    Sender,
+    Tick,
+)
+from laglab_protocol.generated import laglab as mavlink
+
+TS = 0.01
+
+
+def heard(frames: list[bytes]) -> list[Message]:
+    return [frame.message for frame in Receiver().receive(b"".join(frames))]
+
+
+class Robot:
+    """Ticks; the newest command of those received is in force from its next tick on."""
+
+    def __init__(self, first: int = 0) -> None:
+        self.ticks = count(first)
+        self.sender = Sender(ROBOT_SYSTEM, ROBOT_COMPONENT)
+        self.received: list[Message] = []
+        self.in_force = (0.0, 0.0, NO_COMMAND)
+
+    def tick(self) -> bytes:
+        k = next(self.ticks)
+        v, omega, stamp = self.in_force
+        for command in self.received:
+            self.in_force = (command.v, command.omega, command.tick)
+        self.received.clear()
+        sample = Measurement(float(k), -k / 2, k / 8, v, omega, k, stamp)
+        return b"".join(map(self.sender.frame, (sample, Tick(k, 1))))
+
+
+class Rig:
+    """The robot, the relay and a station that answers each tick with v = tick / 1000."""
+
+    def __init__(self, relay: Relay, first: int = 0) -> None:
+        self.relay = relay
+        self.robot = Robot(first)
+        self.station = Sender(STATION_SYSTEM, STATION_COMPONENT)
+        self.rows: list[TraceRow] = []
+        self.told: list[list[Message]] = []
+
+    def feed(self, data: bytes) -> None:
+        for frame in self.relay.receive_from_robot(data, whole=False):
+            if not self.relay.hear(frame):
+                continue
+            if self.relay.under_way:
+                self.rows.append(self.relay.close_tick())
+            if self.relay.outcome is None:
+                self.told.append(heard(self.relay.open_tick()))
+
+    def say(self, *messages: Message) -> None:
+        self.relay.receive(b"".join(map(self.station.frame, messages)), whole=True)
+
+    def forward(self) -> list[Message]:
+        forwarded = heard(self.relay.forward())
+        self.robot.received += forwarded
+        return forwarded
+
+    def run(self, ticks: int) -> None:
+        for _ in range(ticks):
+            self.feed(self.robot.tick())
+            self.forward()
+            self.say(Command(self.relay.tick / 1000, 0.0, self.relay.tick, 1, 1, 0))
+            self.forward()
+
+
+def relay(
+    n: int = 1,
+    m: int = 0,
+    last_tick: int = 10**6,
+    safety: Safety | None = None,
+    commands: RandomFates | None = None,
+) -> Relay:
+    safety = safety or Safety()
+    services = Services(standard_parameters(n, m, safety), placeable=False)
+    config = GatewayConfig(n, m, last_tick, TS, safety)
+    return Relay(config, services, {"command": commands} if commands else None)
+
+
+def fates_of(event: Event) -> RandomFates:
+    return RandomFates(Impairments(), [event], np.random.default_rng(1))
+
+
+@pytest.mark.parametrize("first", [0, 5000])
+@pytest.mark.parametrize(("n", "m"), [(1, 0), (1, 1), (10, 20), (25, 3)])
+def test_both_delays_are_exact_by_the_robots_own_word(n: int, m: int, first: int) -> None:
+    rig = Rig(relay(n, m), first)
+    rig.run(60)
+    for k, told in enumerate(rig.told):
+        *measurements, tick = told
+        assert tick == Tick(first + k, len(measurements))
+        assert [z.tick for z in measurements] == ([first + k - m] if k >= m else [])
+    for k, row in enumerate(rig.rows):
+        assert (row.tick, row.time) == (first + k, k * TS)
+        assert row[2:8] == (None, None, None, first + k, -(first + k) / 2, (first + k) / 8)
+        assert row.v == ((first + k - n) / 1000 if k >= n else 0.0)
+    report = rig.relay.audit.report()
+    for direction, delay in (("command", n), ("measurement", m)):
+        assert report[direction]["measured"]["min"] == delay
+        assert report[direction]["measured"]["max"] == delay
+
+
+def test_with_n_zero_a_command_is_in_force_at_the_robots_next_tick() -> None:
+    rig = Rig(relay(0, 0))
+    rig.run(30)
+    assert [row.v for row in rig.rows] == [0.0] + [k / 1000 for k in range(28)]
+
+
+def test_the_run_ends_so_many_ticks_after_its_first() -> None:
+    rig = Rig(relay(1, 1, last_tick=30), first=700)
+    rig.run(40)
+    assert rig.relay.outcome == Outcome(EndReason.COMPLETED, 730)
+    assert [row.tick for row in rig.rows][:31] == list(range(700, 731))
+
+
+def test_a_tick_that_lost_a_frame_is_passed_over() -> None:
+    rig = Rig(relay())
+    rig.run(3)
+    damaged = bytearray(rig.robot.tick())
+    damaged[20] ^= 1
+    rig.feed(bytes(damaged))
+    rig.run(2)
+    assert [row.tick for row in rig.rows] == [0, 1, 2, 4]
+    assert rig.rows[2].v is None, "the sample that would tell was lost"
+
+
+def test_several_ticks_in_one_piece_are_ticks_one_by_one() -> None:
+    rig = Rig(relay(2, 1))
+    rig.feed(rig.robot.tick() + rig.robot.tick() + rig.robot.tick())
+    assert [told[-1] for told in rig.told] == [Tick(0, 0), Tick(1, 1), Tick(2, 1)]
+
+
+@pytest.mark.parametrize(
+    ("bad", "why"),
+    [
+        ((float("nan"), 0.0), "not finite"),
+        ((0.0, float("inf")), "not finite"),
+        ((3.0, 0.0), "out of limits"),
+    ],
+)
+def test_what_a_robot_must_not_get_is_refused_and_counted(
+    bad: tuple[float, float], why: str
+) -> None:
+    rig = Rig(relay(safety=Safety(v_limit=2.0)))
+    rig.feed(rig.robot.tick())
+    rig.say(Command(*bad, 0, 1, 1, 0))
+    assert rig.forward() == []
+    assert rig.relay.audit.report()["refused"] == {why: 1}
+
+
+def test_a_command_overtaken_on_the_link_is_stale() -> None:
+    held_back = Impairments(reorder=1.0, reorder_by=0.05)
+    rig = Rig(relay(commands=fates_of(Event(0.0, 0.01, held_back))))
+    rig.run(10)
+    assert [row.v for row in rig.rows] == [0.0, 0.0] + [k / 1000 for k in range(1, 8)]
+    assert rig.relay.audit.report()["refused"] == {"stale": 1}
+
+
+def test_the_links_timeline_goes_by_the_runs_time_not_the_robots() -> None:
+    outage = Event(0.1, 0.05, Impairments(loss=1.0))
+    rig = Rig(relay(commands=fates_of(outage)), first=3000)
+    rig.run(30)
+    lost = [row.tick for row in rig.relay.take_link_rows() if row.fate == "lost"]
+    assert lost == list(range(10, 15))
+    assert rig.relay.audit.report()["command"]["lost"] == {"lost": 5}
+
+
+def test_the_stations_end_is_the_outcome_at_the_robots_next_tick() -> None:
+    rig = Rig(relay())
+    rig.run(5)
+    rig.say(End(4, EndReason.DIVERGED))
+    rig.feed(rig.robot.tick())
+    assert rig.relay.outcome == Outcome(EndReason.DIVERGED, 4)
+
+
+@pytest.mark.parametrize(
+    ("said", "meant"), [(EndReason.INTERRUPTED, EndReason.INTERRUPTED), (77, EndReason.FAILED)]
+)
+def test_the_robots_end_is_the_outcome_at_once(said: int, meant: EndReason) -> None:
+    rig = Rig(relay())
+    rig.run(5)
+    rig.feed(rig.robot.sender.frame(End(4, said)))
+    assert rig.relay.outcome == Outcome(meant, 4)
+
+
+def test_only_the_robot_itself_is_heard() -> None:
+    rig = Rig(relay())
+    stranger = Sender(7, ROBOT_COMPONENT)
+    rig.feed(stranger.frame(Tick(0, 0)) + stranger.frame(End(0, 0)))
+    assert not rig.relay.under_way
+    assert rig.relay.outcome is None
+
+
+def test_an_emergency_stop_stops_a_real_robot_for_good() -> None:
+    rig = Rig(relay())
+    rig.run(5)
+    rig.say(CommandLong(1.0, *[0.0] * 6, mavlink.MAV_CMD_DO_FLIGHTTERMINATION, 1, 1, 0))
+    rig.run(5)
+    assert [row.v for row in rig.rows[-3:]] == [0.0, 0.0, 0.0]
+    rig.relay.take_replies()
+    rig.say(CommandLong(*[0.0] * 7, mavlink.MAV_CMD_LAGLAB_RESET_POSE, 1, 1, 0))
+    (ack,) = heard(rig.relay.take_replies())
+    assert isinstance(ack, CommandAck)
+    assert ack.result == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
+    assert rig.relay.services.arming.stopped
+
+
+def test_the_robot_is_greeted_and_ended_as_by_its_station() -> None:
+    (greeting,) = Receiver().receive(relay().greeting())
+    (end,) = Receiver().receive(relay().end_of_robot(EndReason.FAILED))
+    assert isinstance(greeting.message, Heartbeat)
+    assert end.message == End(0, EndReason.FAILED)
+    for frame in (greeting, end):
+        assert (frame.system, frame.component) == (STATION_SYSTEM, STATION_COMPONENT)
