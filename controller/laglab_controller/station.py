@@ -12,6 +12,7 @@ from laglab_controller.joining import Rest, observe, prior
 from laglab_protocol import (
     STATION_COMPONENT,
     STATION_SYSTEM,
+    Codec,
     Command,
     End,
     EndReason,
@@ -20,8 +21,6 @@ from laglab_protocol import (
     Heartbeat,
     Measurement,
     Message,
-    Receiver,
-    Sender,
     Tick,
     Timesync,
 )
@@ -44,15 +43,16 @@ class Station:
         config: StationConfig,
         controller: Callable[[StationConfig], Controller] = Controller,
         clock: Callable[[], int] | None = None,
+        codec: Codec | None = None,
     ) -> None:
         """`clock` [ns] is what TIMESYNC is answered by; without one it is not answered."""
+        codec = codec or Codec(STATION_SYSTEM, STATION_COMPONENT)
         self._config = config
         self._make_controller = controller
         self._clock = clock
         self._controller = controller(config)
         self._joining: Rest | None = None
-        self._sender = Sender(STATION_SYSTEM, STATION_COMPONENT)
-        self._receiver = Receiver()
+        self._sender, self._receiver = codec.sender, codec.receiver
         self._robot: tuple[int, int] | None = None
         self._measurements: list[Measurement] = []
         self._first = 0

@@ -45,5 +45,7 @@ def _exchange(gateway: Gateway, conversation: Conversation) -> None:
     """Send this tick until it is answered; the station answers a repeat with the same."""
     conversation.send_tick()
     while not conversation.listen_for(lambda: gateway.answered):
+        if gateway.station_end is not None:
+            return  # it has ended the run, and will not answer any more
         conversation.check_silence()
         conversation.send(gateway.repeat_tick())

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from laglab_protocol.errors import DialectError
 
+LANGUAGES = ("C", "C++11", "CS", "Java", "Python3", "Swift", "WLua")
 GENERATED = Path(__file__).parent / "generated" / "laglab.py"
 
 
@@ -65,6 +66,23 @@ def generate(xml: Path, language: str, output: Path) -> None:
         raise DialectError(f"{xml}: mavgen refuses it:\n{said.getvalue()}")
     if language == "WLua":
         _mend_dissector(output)
+
+
+def generate_into(language: str, directory: Path, xml: Path | None = None) -> Path:
+    """Our dialect, or another, in one of LANGUAGES for those who write firmware: where it is.
+
+    WLua is the dissector for Wireshark: `wireshark -X lua_script:laglab.lua`. Raises DialectError.
+    """
+    if language not in LANGUAGES:
+        raise DialectError(f"no language {language!r}: take one of {', '.join(LANGUAGES)}")
+    xml = xml or dialect_path()
+    if not xml.is_file():
+        raise DialectError(f"cannot read {xml}: no such file")
+    directory.mkdir(parents=True, exist_ok=True)
+    suffix = {"Python3": ".py", "WLua": ".lua"}.get(language)
+    output = directory / f"{xml.stem}{suffix}" if suffix else directory
+    generate(xml, language, output)
+    return output
 
 
 def _mend_dissector(output: Path) -> None:

@@ -10,12 +10,9 @@ from laglab_protocol.endpoints import Endpoint
 from laglab_protocol.errors import KeyFileError, UnsignedLinkError
 from laglab_protocol.receiver import Receiver
 from laglab_protocol.sender import Sender
-from laglab_protocol.signing import KEY_SIZE, Signer, Stream, Timestamps, Verifier
+from laglab_protocol.signing import AHEAD, KEY_SIZE, Signer, Stream, Timestamps, Verifier
 
 LINK_ID = 0
-AHEAD = 100_000
-"""Timestamps, one second: so far ahead of what was said the file is written, so that it need not
-be written for every frame. After a crash the other side is refused for at most that long."""
 
 
 def make_key(path: Path) -> None:
@@ -48,7 +45,11 @@ def read_key(path: Path) -> bytes:
 
 
 class StoredTimestamps(Timestamps):
-    """Timestamps that survive: the file is at all times at or ahead of what has been accepted."""
+    """Timestamps that survive: the file is at all times at or ahead of what has been accepted.
+
+    It is written a second ahead, so that it need not be for every frame; after a crash the other
+    side is refused for at most that long.
+    """
 
     def __init__(self, path: Path) -> None:
         """Raises KeyFileError when the file is there and does not hold timestamps."""

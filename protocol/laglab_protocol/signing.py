@@ -25,10 +25,14 @@ _unpack_signature = struct.Struct("<BIH6s").unpack_from
 
 CLOCK_EVERY = 16
 """Timestamps: in between a signer counts on, for reading the clock costs a third of signing."""
+_NEXT, _CLOCK_EVERY = 1 << 8, (CLOCK_EVERY - 1) << 8
+"""The same where the link id stands in the lowest byte, as the two travel."""
 
 Stream = tuple[int, int, int]
 """(link id, system, component)."""
 Clock = Callable[[], int]
+AHEAD = 100_000
+"""Timestamps, one second: so far ahead a stream may go on before its place is kept again."""
 
 
 def signing_time() -> int:
@@ -45,7 +49,7 @@ class Timestamps:
     def reserve(self, stream: Stream, timestamp: int) -> int:
         """Before `timestamp` counts: up to which one may the stream go on without asking again."""
         del stream
-        return timestamp + MINUTE
+        return timestamp + AHEAD
 
     def close(self) -> None:
         """Nothing more will be said."""
@@ -63,29 +67,30 @@ class Signer:
     ) -> None:
         self._keyed = sha256(key)
         self._stream = stream
-        self._link = stream[0]
         self._timestamps = timestamps or Timestamps()
         self._last = self._timestamps.last
-        self._latest = self._last.get(stream, 0)
+        self._latest = self._last.get(stream, 0) << 8 | stream[0]
         self._reserved = 0
         self._clock = clock
 
     def sign(self, frame: bytes) -> bytes:
         """`frame`, which carries the SIGNED flag, with its signature. No timestamp comes twice."""
-        timestamp = self._latest + 1
-        if timestamp > self._reserved or not timestamp % CLOCK_EVERY:
-            timestamp = self._by_the_clock(timestamp)
-        self._latest = self._last[self._stream] = timestamp
-        stamped = frame + (timestamp << 8 | self._link).to_bytes(7, "little")
+        latest = self._latest + _NEXT
+        if latest > self._reserved or not latest & _CLOCK_EVERY:
+            latest = self._by_the_clock(latest)
+        self._latest = latest
+        stamped = frame + latest.to_bytes(7, "little")
         digest = self._keyed.copy()
         digest.update(stamped)
         return stamped + digest.digest()[:6]
 
     def _by_the_clock(self, least: int) -> int:
-        timestamp = max(least, self._clock())
-        if timestamp > self._reserved:
-            self._reserved = self._timestamps.reserve(self._stream, timestamp)
-        return timestamp
+        timestamp = max(least >> 8, self._clock())
+        if timestamp << 8 > self._reserved:
+            reserved = self._timestamps.reserve(self._stream, timestamp)
+            self._last[self._stream] = reserved
+            self._reserved = reserved << 8
+        return timestamp << 8 | self._stream[0]
 
 
 class Verifier:

@@ -4,7 +4,17 @@ import sys
 
 import typer
 
-from laglab.commands import bench, compare, consistency, errata, fmu, run, scenarios, sides
+from laglab.commands import (
+    bench,
+    compare,
+    consistency,
+    errata,
+    fmu,
+    protocol,
+    run,
+    scenarios,
+    sides,
+)
 from laglab.errors import LaglabError, RunError, ScenarioError
 from laglab.processes import SIDE_ERRORS
 from laglab_controller import StationError
@@ -27,6 +37,8 @@ app.command("gateway")(sides.gateway)
 app.command("controller")(sides.controller)
 app.add_typer(bench.app, name="bench")
 app.add_typer(fmu.app, name="fmu")
+app.add_typer(protocol.app, name="protocol")
+app.command("conform")(protocol.conform)
 
 LINK_LOST = (
     StationError,

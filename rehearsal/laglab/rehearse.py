@@ -1,7 +1,6 @@
 """One rehearsal: start the two sides, follow them, and keep what they leave."""
 
 import tempfile
-import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
@@ -24,8 +23,7 @@ from laglab.processes import (
     station_process,
 )
 from laglab.scenario import Scenario
-from laglab.sides import open_gateway, serve, station_config
-from laglab_controller import Station
+from laglab.sides import open_gateway, open_station, serve
 from laglab_gateway import FileRecorder, Outcome, Patience
 
 Transport = Literal["inline", "udp", "serial"]
@@ -50,26 +48,34 @@ def rehearse(
     transport: Transport,
     directory: Path,
     progress: Callable[[int], None],
+    key: Path | None = None,
     plant: str | None = None,
 ) -> Ending:
-    """Run both sides to the end; trace, log and scenario are then in ``directory``.
+    """Run both sides to the end; trace, log and scenario are then in `directory`.
 
-    The robot is the FMU, or the real one at the address `plant`, but for `inline`.
+    With a `key` every frame is signed, and what is not is refused. The robot is the FMU, or the
+    real one at the address `plant`, but for `inline`.
     """
     directory.mkdir(parents=True, exist_ok=True)
     (directory / SCENARIO_FILE).write_text(scenario.to_toml(), encoding="utf-8")
     if transport == "inline":
         assert plant is None, "a real robot does not wait for a station in this process"
-        return _inline(scenario, directory, progress)
+        return _inline(scenario, directory, progress, key)
     with _gateway_url(transport) as url:
-        return _two_processes(scenario, plant, url, directory, progress)
+        return _two_processes(scenario, url, directory, progress, key, plant)
 
 
-def _inline(scenario: Scenario, directory: Path, progress: Callable[[int], None]) -> Ending:
+def _inline(
+    scenario: Scenario, directory: Path, progress: Callable[[int], None], key: Path | None
+) -> Ending:
     clock = LoopClock(progress)
     try:
-        with open_gateway(scenario) as gateway, closing(FileRecorder(directory)) as recorder:
-            endpoint = InlineEndpoint(Station(station_config(scenario), clock=time.monotonic_ns))
+        with (
+            open_gateway(scenario, key) as gateway,
+            open_station(scenario, key) as station,
+            closing(FileRecorder(directory)) as recorder,
+        ):
+            endpoint = InlineEndpoint(station)
             outcome, statistics = serve(scenario, gateway, endpoint, recorder, Patience(), clock)
     except SIDE_ERRORS as error:
         return Ending(None, str(error), clock.seconds, {})
@@ -93,19 +99,20 @@ def far_end(address: str) -> str:
 
 def _two_processes(
     scenario: Scenario,
-    plant: str | None,
     url: str,
     directory: Path,
     progress: Callable[[int], None],
+    key: Path | None,
+    plant: str | None,
 ) -> Ending:
     notice = scenario.silence_timeout + NOTICE_SECONDS
-    with started("gateway", gateway_process, scenario, plant, url, directory) as gateway:
+    with started("gateway", gateway_process, scenario, url, directory, key, plant) as gateway:
         match gateway.next_report():
             case Listening(address):
                 station_url = far_end(address)
             case report:
                 return _ending(report, [], 0.0)
-        with started("controller", station_process, scenario, station_url) as station:
+        with started("controller", station_process, scenario, station_url, key) as station:
             try:
                 return _follow(gateway, station, notice, progress)
             except KeyboardInterrupt:

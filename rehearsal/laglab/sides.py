@@ -1,16 +1,16 @@
 """The two sides of a rehearsal, each made from the scenario alone."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from laglab.scenario import Scenario
-from laglab_controller import Law, RobotModel, StationConfig
+from laglab_controller import Law, RobotModel, Station, StationConfig
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
     IDEAL,
@@ -26,15 +26,27 @@ from laglab_gateway import (
     RecordedFates,
     Recorder,
     Relay,
+    RobotSide,
     Services,
     Timesyncing,
+    Watch,
+    Watcher,
     read_link_log,
     serve_lockstep,
     serve_realtime,
     serve_remote,
     standard_parameters,
 )
-from laglab_protocol import Endpoint, open_endpoint
+from laglab_protocol import (
+    ROBOT_COMPONENT,
+    ROBOT_SYSTEM,
+    STATION_COMPONENT,
+    STATION_SYSTEM,
+    Codec,
+    Endpoint,
+    open_endpoint,
+    refuse_open_door,
+)
 
 
 def robot_parameters(scenario: Scenario) -> RobotParameters:
@@ -76,13 +88,16 @@ def robot_services(scenario: Scenario, free_running: bool, placeable: bool = Tru
 
 
 @contextmanager
-def open_gateway(scenario: Scenario) -> Iterator[Gateway]:
-    """The robot's side, its FMU loaded until the context ends."""
+def open_gateway(scenario: Scenario, key: Path | None = None) -> Iterator[Gateway]:
+    """The robot's side, its FMU loaded until the context ends; its frames signed with a key."""
     parameters = robot_parameters(scenario)
-    with Robot.open(scenario.fmi, parameters) as robot:
+    with (
+        Robot.open(scenario.fmi, parameters) as robot,
+        Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, key) as codec,
+    ):
         plant = FmuPlant(robot, parameters)
         services = robot_services(scenario, free_running=scenario.pace == "realtime")
-        yield Gateway(plant, gateway_config(scenario), link_fates(scenario), services)
+        yield Gateway(plant, gateway_config(scenario), link_fates(scenario), services, codec)
 
 
 DIRECTIONS: tuple[Direction, ...] = ("command", "measurement")
@@ -110,15 +125,25 @@ def serve(
     recorder: Recorder,
     patience: Patience,
     progress: Callable[[int], None],
+    watchers: Sequence[Endpoint] = (),
 ) -> tuple[Outcome, dict[str, Any]]:
     """Run the robot's side at the scenario's pace: how it ended, and what the stamps tell."""
+    watch = watch_of(gateway, watchers)
     if scenario.pace == "lockstep":
-        outcome = serve_lockstep(gateway, endpoint, recorder, patience, progress)
+        outcome = serve_lockstep(gateway, endpoint, recorder, patience, progress, watch)
         return outcome, {"link": gateway.audit.report()}
     period = scenario.sample_time / scenario.speed
-    outcome, lateness = serve_realtime(gateway, endpoint, recorder, patience, progress, period)
+    outcome, lateness = serve_realtime(
+        gateway, endpoint, recorder, patience, progress, period, watch=watch
+    )
     link = gateway.audit.report() | {"timesync": clock_audit(gateway.services)}
     return outcome, {"link": link, "timing": lateness.report()}
+
+
+def watch_of(side: RobotSide, watchers: Sequence[Endpoint]) -> Watch:
+    """Ground stations that look on, unsigned, on links of their own."""
+    codecs = (Codec(ROBOT_SYSTEM, ROBOT_COMPONENT) for _ in watchers)
+    return Watch(side.services, list(map(Watcher, watchers, codecs)))
 
 
 def clock_audit(services: Services) -> dict[str, float] | None:
@@ -137,35 +162,54 @@ def clock_audit(services: Services) -> dict[str, float] | None:
 
 
 def serve_real(
-    scenario: Scenario,
+    relay: Relay,
     robot: Endpoint,
     endpoint: Endpoint,
     recorder: Recorder,
     patience: Patience,
     progress: Callable[[int], None],
+    watchers: Sequence[Endpoint] = (),
 ) -> tuple[Outcome, dict[str, Any]]:
     """Be the link in front of a real robot, at its own pace; as `serve`."""
-    services = robot_services(scenario, free_running=True, placeable=False)
-    relay = Relay(gateway_config(scenario), services, link_fates(scenario))
-    outcome = serve_remote(relay, robot, endpoint, recorder, patience, progress)
-    return outcome, {"link": relay.audit.report() | {"timesync": clock_audit(services)}}
+    watch = watch_of(relay, watchers)
+    outcome = serve_remote(relay, robot, endpoint, recorder, patience, progress, watch)
+    return outcome, {"link": relay.audit.report() | {"timesync": clock_audit(relay.services)}}
 
 
-Serve = Callable[
-    [Endpoint, Recorder, Patience, Callable[[int], None]], tuple[Outcome, dict[str, Any]]
-]
-"""`serve` or `serve_real`, given all but what is on the station's side."""
+class Serve(Protocol):
+    """`serve` or `serve_real`, given all but what is on the station's side."""
+
+    def __call__(
+        self,
+        endpoint: Endpoint,
+        recorder: Recorder,
+        patience: Patience,
+        progress: Callable[[int], None],
+        watchers: Sequence[Endpoint] = (),
+    ) -> tuple[Outcome, dict[str, Any]]: ...
 
 
 @contextmanager
-def open_robot(scenario: Scenario, plant: str | None) -> Iterator[Serve]:
-    """The robot's side: the FMU, or the real robot at the address `plant`."""
+def open_robot(
+    scenario: Scenario, key: Path | None, plant: str | None, unsigned: bool = False
+) -> Iterator[Serve]:
+    """The robot's side: the FMU, or the real robot at the address `plant`.
+
+    The key is for the station's link; the robot's own link must be out of strangers' reach, or
+    `unsigned` in so many words.
+    """
     if plant is None:
-        with open_gateway(scenario) as gateway:
+        with open_gateway(scenario, key) as gateway:
             yield partial(serve, scenario, gateway)
-    else:
-        with open_endpoint(plant) as robot:
-            yield partial(serve_real, scenario, robot)
+        return
+    with (
+        open_endpoint(plant) as robot,
+        Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, key) as codec,
+    ):
+        refuse_open_door(robot, None, unsigned)
+        services = robot_services(scenario, free_running=True, placeable=False)
+        relay = Relay(gateway_config(scenario), services, link_fates(scenario), codec)
+        yield partial(serve_real, relay, robot)
 
 
 def robot_model(scenario: Scenario) -> RobotModel:
@@ -198,3 +242,10 @@ def station_config(scenario: Scenario) -> StationConfig:
         initial_covariance=scenario.initial_covariance * np.eye(3),
         command_delay=scenario.command_delay,
     )
+
+
+@contextmanager
+def open_station(scenario: Scenario, key: Path | None = None) -> Iterator[Station]:
+    """The remote station's side, its frames signed with a key."""
+    with Codec(STATION_SYSTEM, STATION_COMPONENT, key) as codec:
+        yield Station(station_config(scenario), clock=time.monotonic_ns, codec=codec)

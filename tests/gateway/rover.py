@@ -64,7 +64,7 @@ def main(url: str) -> None:
         gateway = Gateway(FmuPlant(robot, PARAMETERS), config, services=services)
         watch = Watch(services, [Watcher(endpoint, Codec(ROBOT_SYSTEM, ROBOT_COMPONENT))])
         link = InlineEndpoint(station())
-        serve_lockstep(gateway, link, NoRecorder(), Patience(), watch, _breathe)
+        serve_lockstep(gateway, link, NoRecorder(), Patience(), progress=_breathe, watch=watch)
 
 
 if __name__ == "__main__":

@@ -44,7 +44,9 @@ def serve(endpoint: Endpoint, key_file: Path | None) -> None:
     ):
         gateway = Gateway(FmuPlant(robot, PARAMETERS), config, codec=codec)
         watch, patience = Watch(gateway.services, []), Patience(0.05, 3.0, 5.0)
-        serve_lockstep(gateway, endpoint, NoRecorder(), patience, watch, lambda _: None)
+        serve_lockstep(
+            gateway, endpoint, NoRecorder(), patience, progress=lambda _: None, watch=watch
+        )
 
 
 @pytest.mark.slow

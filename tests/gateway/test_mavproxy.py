@@ -1,6 +1,5 @@
 """MAVProxy, with our dialect: finds the robot, reads and sets parameters, arms it, sees it move."""
 
-import os
 import queue
 import re
 import shutil
@@ -13,14 +12,6 @@ from pathlib import Path
 
 import pytest
 
-PROGRAM = """
-import runpy, sys
-from laglab_protocol.dialect import offer_to_pymavlink
-offer_to_pymavlink()
-sys.argv = ["mavproxy.py", "--master=udp:127.0.0.1:{port}", "--dialect=laglab",
-            "--state-basedir={folder}", "--aircraft=rover", "--default-modules=param,arm"]
-runpy.run_path({script!r}, run_name="__main__")
-"""
 PATIENCE = 20.0
 
 
@@ -67,10 +58,14 @@ def mavproxy(port: int, tmp_path: Path) -> Iterator[MavProxy]:
     beside = Path(sys.executable).parent / "mavproxy.py"
     script = beside if beside.is_file() else shutil.which("mavproxy.py")
     assert script, "MAVProxy is not installed: pip install laglab[test]"
-    program = PROGRAM.format(port=port, folder=tmp_path, script=str(script))
+    options = [
+        f"--master=udp:127.0.0.1:{port}",
+        f"--state-basedir={tmp_path}",
+        "--aircraft=rover",
+        "--default-modules=param,arm",
+    ]
     with subprocess.Popen(
-        [sys.executable, "-c", program],
-        env=os.environ | {"MAVLINK20": "1"},
+        [sys.executable, "-m", "laglab_protocol.pymavlink", script, *options],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,

@@ -1,12 +1,19 @@
 """The committed Python, and our NamedTuples, are what the XML says."""
 
+import tomllib
 from enum import IntEnum
 from pathlib import Path
 
 import pytest
 
 from laglab_protocol import DialectError, EndReason, message_type
-from laglab_protocol.dialect import GENERATED, dialect_path, generate
+from laglab_protocol.dialect import (
+    GENERATED,
+    LANGUAGES,
+    dialect_path,
+    generate,
+    generate_into,
+)
 from laglab_protocol.generated import laglab as dialect
 from laglab_protocol.messages import WRITTEN_OUT
 
@@ -61,3 +68,28 @@ def test_what_mavgen_refuses_is_our_error(tmp_path: Path) -> None:
 
     with pytest.raises(DialectError, match=r"broken\.xml"):
         generate(xml, "Python3", tmp_path / "out.py")
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_language_is_generated(tmp_path: Path, language: str) -> None:
+    where = generate_into(language, tmp_path / "out")
+    made = [where] if where.is_file() else [path for path in where.rglob("*") if path.is_file()]
+    names = [path.name.lower() for path in made]
+    texts = [path.read_text(errors="replace").lower() for path in made]
+
+    assert any("laglab_measurement" in text for text in [*names, *texts])
+
+
+def test_a_language_that_there_is_not_is_said(tmp_path: Path) -> None:
+    with pytest.raises(DialectError, match="COBOL"):
+        generate_into("COBOL", tmp_path)
+    with pytest.raises(DialectError, match=r"no\.xml"):
+        generate_into("C", tmp_path, tmp_path / "no.xml")
+
+
+def test_the_installed_package_carries_the_dialect() -> None:
+    """In a clone the XML lies beside the package, in a wheel inside it."""
+    project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())
+    forced = project["tool"]["hatch"]["build"]["targets"]["wheel"]["force-include"]
+
+    assert forced["protocol/laglab.xml"] == "laglab_protocol/laglab.xml"

@@ -26,8 +26,8 @@ from laglab_protocol import (
 )
 from laglab_protocol.frame import SIGNED, encode
 from laglab_protocol.generated import laglab as dialect
-from laglab_protocol.keys import AHEAD, StoredTimestamps
-from laglab_protocol.signing import CLOCK_EVERY, MINUTE, Signer, Timestamps, Verifier
+from laglab_protocol.keys import StoredTimestamps
+from laglab_protocol.signing import AHEAD, CLOCK_EVERY, MINUTE, Signer, Timestamps, Verifier
 
 KEY = bytes(range(32))
 OTHER_KEY = bytes(32)

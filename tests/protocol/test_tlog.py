@@ -1,6 +1,5 @@
 """The log reads back, by us and by mavlogdump.py."""
 
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -10,14 +9,6 @@ import pytest
 from laglab_protocol import Command, Sender, Tick, TlogError, read_tlog, tlog_record
 
 T0 = 1_700_000_000_000_000
-
-DUMP = """
-import runpy, sys
-from laglab_protocol.dialect import offer_to_pymavlink
-offer_to_pymavlink()
-sys.argv = ["mavlogdump.py", "--dialect", "laglab", {log!r}]
-runpy.run_module("pymavlink.tools.mavlogdump", run_name="__main__")
-"""
 
 
 @pytest.fixture
@@ -54,10 +45,8 @@ def test_what_is_no_log_is_refused(tmp_path: Path) -> None:
 
 
 def test_mavlogdump_reads_it(log: Path) -> None:
-    program = DUMP.format(log=str(log))
     done = subprocess.run(
-        [sys.executable, "-c", program],
-        env=os.environ | {"MAVLINK20": "1"},
+        [sys.executable, "-m", "laglab_protocol.pymavlink", "mavlogdump", log],
         capture_output=True,
         text=True,
         check=True,

@@ -8,10 +8,9 @@ import re
 import signal
 import socket
 import subprocess
-import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -25,36 +24,8 @@ from laglab_protocol import EndReason, read_tlog
 
 Laglab = Callable[..., subprocess.CompletedProcess[str]]
 Start = Callable[..., "subprocess.Popen[str]"]
+ListeningPort = Callable[["subprocess.Popen[str]"], str]
 NOTICED_WITHIN = 5.0
-
-
-@pytest.fixture
-def start(tmp_path: Path) -> Iterator[Start]:
-    """Start ``laglab ARGUMENTS`` in the background; whatever still runs at the end is ended."""
-    running: list[subprocess.Popen[str]] = []
-
-    def call(*arguments: str) -> "subprocess.Popen[str]":
-        process = subprocess.Popen(
-            [sys.executable, "-m", "laglab", *arguments],
-            cwd=tmp_path,
-            stderr=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
-            text=True,
-        )
-        running.append(process)
-        return process
-
-    yield call
-    for process in running:
-        process.kill()
-        process.communicate()
-
-
-def listening_port(gateway: "subprocess.Popen[str]") -> str:
-    assert gateway.stderr is not None
-    found = re.search(r"listening on udpin://127\.0\.0\.1:(\d+)", gateway.stderr.readline())
-    assert found
-    return found[1]
 
 
 def wait_for_rows(trace: Path, rows: int) -> None:
@@ -119,7 +90,9 @@ class LossyWire:
         self._far.close()
 
 
-def test_lost_datagrams_change_nothing(start: Start, laglab: Laglab, tmp_path: Path) -> None:
+def test_lost_datagrams_change_nothing(
+    start: Start, listening_port: ListeningPort, laglab: Laglab, tmp_path: Path
+) -> None:
     options = ("lab", "--duration", "0.6")
     assert laglab("run", *options, "--transport", "inline", "--out", "calm").returncode == 0
     gateway = start("gateway", *options, "--endpoint", "udpin://127.0.0.1:0", "--out", "lossy")
@@ -135,7 +108,9 @@ def test_lost_datagrams_change_nothing(start: Start, laglab: Laglab, tmp_path: P
     assert traces[0] == traces[1]
 
 
-def test_a_dead_controller_is_noticed_by_the_gateway(start: Start, tmp_path: Path) -> None:
+def test_a_dead_controller_is_noticed_by_the_gateway(
+    start: Start, listening_port: ListeningPort, tmp_path: Path
+) -> None:
     options = ("fig6", "--duration", "3600")
     gateway = start("gateway", *options, "--endpoint", "udpin://127.0.0.1:0", "--out", "run")
     station = start(
@@ -152,7 +127,9 @@ def test_a_dead_controller_is_noticed_by_the_gateway(start: Start, tmp_path: Pat
     assert_whole(tmp_path / "run" / "trace.csv")
 
 
-def test_a_dead_gateway_is_noticed_by_the_controller(start: Start, tmp_path: Path) -> None:
+def test_a_dead_gateway_is_noticed_by_the_controller(
+    start: Start, listening_port: ListeningPort, tmp_path: Path
+) -> None:
     options = ("fig6", "--duration", "3600")
     gateway = start("gateway", *options, "--endpoint", "udpin://127.0.0.1:0", "--out", "run")
     station = start(
@@ -225,7 +202,7 @@ def test_files_are_whole_whenever_a_side_is_killed(
 
 @pytest.mark.parametrize("pace", [("lockstep",), ("realtime", "--speed", "2")])
 def test_a_controller_started_again_takes_over(
-    start: Start, tmp_path: Path, pace: tuple[str, ...]
+    start: Start, listening_port: ListeningPort, tmp_path: Path, pace: tuple[str, ...]
 ) -> None:
     options = ("lab", "--pace", *pace, "--silence", "20")
     gateway = start("gateway", *options, "--endpoint", "udpin://127.0.0.1:0", "--out", "run")

@@ -182,9 +182,9 @@ def _incomplete(session: RobotSession) -> str | None:
 
 
 def _ends(session: RobotSession) -> str | None:
-    """It answers END once with the same, perhaps after the tick that it is at."""
+    """It answers END with the same reason."""
     end = End(session.tick, EndReason.INTERRUPTED)
-    session.send(end, session.stimulus())
+    session.send(end)
     answer = session.listen(session.patience.react, lambda frame: isinstance(frame.message, End))
     if answer is None:
         return "END is not answered"

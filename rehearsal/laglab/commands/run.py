@@ -22,6 +22,10 @@ EXIT_CODES = {
     EndReason.FAILED: 1,
 }
 
+KeyOption = Annotated[
+    Path | None,
+    typer.Option("--key", metavar="FILE", help="Sign every frame; `laglab protocol keygen`."),
+]
 OutOption = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Where the results go; runs/SCENARIO otherwise."),
@@ -43,6 +47,7 @@ def run(
         Transport, typer.Option(help="What is between the two processes; inline is one process.")
     ] = "udp",
     out: OutOption = None,
+    key: KeyOption = None,
     plant: PlantOption = None,
 ) -> None:
     """Rehearse SCENARIO: robot and controller, the delayed link between them, and the verdict."""
@@ -52,7 +57,12 @@ def run(
     with progress_bar() as bar:
         task = bar.add_task(scenario.name, total=scenario.last_tick)
         ending = rehearse(
-            scenario, transport, directory, lambda tick: bar.update(task, completed=tick), plant
+            scenario,
+            transport,
+            directory,
+            lambda tick: bar.update(task, completed=tick),
+            key,
+            plant,
         )
         if ending.outcome:
             bar.update(task, completed=ending.outcome.tick)

@@ -1,22 +1,27 @@
-"""``laglab gateway`` and ``laglab controller``: each side on its own."""
+"""`laglab gateway` and `laglab controller`: each side on its own."""
 
-import time
-from contextlib import closing
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.console import Console
 
-from laglab.commands.run import EXIT_CODES, PlantOption, progress_bar
+from laglab.commands.run import EXIT_CODES, KeyOption, PlantOption, progress_bar
 from laglab.options import on_scenario
 from laglab.scenario import Scenario
-from laglab.sides import open_robot, station_config
-from laglab_controller import Station, run_station
+from laglab.sides import open_robot, open_station
+from laglab_controller import run_station
 from laglab_gateway import FileRecorder, NoRecorder, Patience
-from laglab_protocol import EndReason, open_endpoint
+from laglab_protocol import Endpoint, EndReason, open_endpoint, refuse_open_door
 
 ENDPOINT_HELP = "udpin://HOST:PORT, udpout://HOST:PORT, serial:///dev/ttyX:BAUD or pty://PATH."
+
+UnsignedOption = Annotated[
+    bool,
+    typer.Option("--unsigned", help="Let anybody who can reach the endpoints move the robot."),
+]
 
 
 @on_scenario
@@ -25,17 +30,29 @@ def gateway(
     endpoint: Annotated[
         str, typer.Option(metavar="URL", help=ENDPOINT_HELP)
     ] = "udpin://127.0.0.1:14550",
+    watch: Annotated[
+        list[str] | None,
+        typer.Option(metavar="URL", help="A ground station may look on there; may be repeated."),
+    ] = None,
     out: Annotated[
         Path | None,
         typer.Option("--out", metavar="DIR", help="Where trace.csv and robot.tlog go."),
     ] = None,
+    key: KeyOption = None,
+    unsigned: UnsignedOption = False,
     plant: PlantOption = None,
 ) -> None:
     """Be the robot's side of SCENARIO: wait for a controller, run to the end."""
     console = Console(stderr=True)
-    recorder = FileRecorder(out) if out else NoRecorder()
-    with open_robot(scenario, plant) as serve, closing(recorder), open_endpoint(endpoint) as link:
-        console.print(f"listening on {link.name}", highlight=False, soft_wrap=True)
+    with (
+        open_robot(scenario, key, plant, unsigned) as serve,
+        closing(FileRecorder(out) if out else NoRecorder()) as recorder,
+        open_endpoint(endpoint) as link,
+        _watchers(watch or [], unsigned) as watchers,
+    ):
+        refuse_open_door(link, key, unsigned)
+        for each in (link, *watchers):
+            console.print(f"listening on {each.name}", highlight=False, soft_wrap=True)
         with progress_bar() as bar:
             task = bar.add_task(scenario.name, total=scenario.last_tick)
             outcome, _ = serve(
@@ -43,9 +60,20 @@ def gateway(
                 recorder,
                 Patience(silence=scenario.silence_timeout),
                 lambda tick: bar.update(task, completed=tick),
+                watchers,
             )
     console.print(f"{outcome.reason.name.lower()} at tick {outcome.tick}", highlight=False)
     raise typer.Exit(EXIT_CODES[outcome.reason])
+
+
+@contextmanager
+def _watchers(urls: Sequence[str], unsigned: bool) -> Iterator[list[Endpoint]]:
+    """Links of their own, unsigned: on this machine only, unless told otherwise."""
+    with ExitStack() as stack:
+        watchers = [stack.enter_context(open_endpoint(url)) for url in urls]
+        for watcher in watchers:
+            refuse_open_door(watcher, None, unsigned)
+        yield watchers
 
 
 @on_scenario
@@ -54,10 +82,10 @@ def controller(
     endpoint: Annotated[
         str, typer.Option(metavar="URL", help=ENDPOINT_HELP)
     ] = "udpout://127.0.0.1:14550",
+    key: KeyOption = None,
 ) -> None:
     """Be the remote station of SCENARIO: stabilise the robot at the other end."""
-    with open_endpoint(endpoint) as link:
+    with open_endpoint(endpoint) as link, open_station(scenario, key) as station:
         typer.echo(f"calling {link.name}", err=True)
-        station = Station(station_config(scenario), clock=time.monotonic_ns)
         end = run_station(station, link, scenario.silence_timeout)
     raise typer.Exit(EXIT_CODES[EndReason(end.reason)])

@@ -1,0 +1,187 @@
+"""How fast the codec is, beside pymavlink's and mavgen's C on the same messages, in one run.
+
+The three take turns in short blocks, and of each the fastest block counts: what else the machine
+does falls on all alike and drops out of the ratios.
+"""
+
+import itertools
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+from laglab_protocol.dialect import dialect_path, generate
+from laglab_protocol.generated import laglab as pymavlink
+from laglab_protocol.messages import Measurement
+from laglab_protocol.receiver import Receiver
+from laglab_protocol.sender import Sender
+from laglab_protocol.signing import Signer, Verifier
+
+FIELDS = (1.5, -2.0, 3.125, 0.5, -1.7, 1_234_567, 1_234_537)
+"""Of a LAGLAB_MEASUREMENT: a frame of 60 bytes."""
+BLOCK = 500
+KEY = bytes(range(32))
+
+
+class Row(NamedTuple):
+    """Microseconds a message; C's is None where it is not measured."""
+
+    what: str
+    ours_us: float
+    pymavlink_us: float
+    c_us: float | None
+
+    @property
+    def times_faster(self) -> float:
+        """Than pymavlink."""
+        return self.pymavlink_us / self.ours_us
+
+    def __str__(self) -> str:
+        c = f"C {self.c_us:5.2f} us" if self.c_us else ""
+        return (
+            f"{self.what:16} ours {self.ours_us:5.2f} us   pymavlink {self.pymavlink_us:5.2f} us   "
+            f"{self.times_faster:4.1f} times faster   {c}"
+        )
+
+
+def bench_codec(rounds: int = 100) -> list[Row]:
+    """Encode from fields to bytes, decode from bytes to fields, unsigned and signed."""
+    c = _bench_c()
+    return [
+        _row("encode", rounds, _encode_ours(None), _encode_theirs(signed=False), c[0]),
+        _row("decode", rounds, _decode_ours(None), _decode_theirs(signed=False), c[1]),
+        _row("encode signed", rounds, _encode_ours(KEY), _encode_theirs(signed=True), None),
+        _row("decode signed", rounds, _decode_ours(KEY), _decode_theirs(signed=True), None),
+    ]
+
+
+Block = Callable[[], None]
+
+
+def _row(what: str, rounds: int, ours: Block, theirs: Block, c_us: float | None) -> Row:
+    best = {ours: float("inf"), theirs: float("inf")}
+    for block in itertools.islice(itertools.cycle(best), 2 * rounds):
+        started = time.perf_counter()
+        block()
+        best[block] = min(best[block], time.perf_counter() - started)
+    return Row(what, best[ours] / BLOCK * 1e6, best[theirs] / BLOCK * 1e6, c_us)
+
+
+def _encode_ours(key: bytes | None) -> Block:
+    sender = Sender(1, 1, Signer(key, (0, 1, 1)) if key else None)
+
+    def block() -> None:
+        for _ in range(BLOCK):
+            sender.frame(Measurement(*FIELDS))
+
+    return block
+
+
+def _decode_ours(key: bytes | None) -> Block:
+    sender = Sender(1, 1, Signer(key, (0, 1, 1)) if key else None)
+    frames = [sender.frame(Measurement(*FIELDS)) for _ in range(BLOCK)]
+
+    def block() -> None:
+        receiver = Receiver(Verifier(key) if key else None)
+        read = [receiver.receive(frame) for frame in frames]
+        assert all(read)
+
+    return block
+
+
+def _theirs(signed: bool) -> pymavlink.MAVLink:
+    mav = pymavlink.MAVLink(None, 1, 1)
+    if signed:
+        mav.signing.secret_key = KEY
+        mav.signing.sign_outgoing = True
+        mav.signing.timestamp = 1
+    return mav
+
+
+def _encode_theirs(signed: bool) -> Block:
+    mav = _theirs(signed)
+
+    def block() -> None:
+        for _ in range(BLOCK):
+            pymavlink.MAVLink_laglab_measurement_message(*FIELDS).pack(mav)
+
+    return block
+
+
+def _decode_theirs(signed: bool) -> Block:
+    mav = _theirs(signed)
+    frames = [pymavlink.MAVLink_laglab_measurement_message(*FIELDS).pack(mav) for _ in range(BLOCK)]
+
+    def block() -> None:
+        parser = _theirs(signed)
+        read = [parser.parse_buffer(frame) for frame in frames]
+        assert all(read)
+
+    return block
+
+
+C_PROGRAM = """
+#include <stdio.h>
+#include <time.h>
+#include <laglab/mavlink.h>
+
+enum { BLOCK = 20000, ROUNDS = 50 };
+
+static double now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+int main(void)
+{
+    mavlink_message_t message;
+    mavlink_status_t status;
+    mavlink_laglab_measurement_t fields;
+    uint8_t raw[MAVLINK_MAX_PACKET_LEN];
+    double encode = 1, decode = 1, sum = 0;
+    for (int round = 0; round < ROUNDS; round++) {
+        uint16_t size = 0;
+        double started = now();
+        for (int i = 0; i < BLOCK; i++) {
+            mavlink_msg_laglab_measurement_pack(
+                1, 1, &message, 1.5, -2.0, 3.125, 0.5, -1.7, 1234567, 1234537);
+            size = mavlink_msg_to_send_buffer(raw, &message);
+        }
+        const double taken = (now() - started) / BLOCK;
+        encode = taken < encode ? taken : encode;
+        started = now();
+        for (int i = 0; i < BLOCK; i++)
+            for (uint16_t j = 0; j < size; j++)
+                if (mavlink_parse_char(MAVLINK_COMM_1, raw[j], &message, &status)) {
+                    mavlink_msg_laglab_measurement_decode(&message, &fields);
+                    sum += fields.x;
+                }
+        const double read = (now() - started) / BLOCK;
+        decode = read < decode ? read : decode;
+    }
+    printf("%g %g\\n", 1e6 * encode, 1e6 * decode);
+    return sum == 1.5 * BLOCK * ROUNDS ? 0 : 1;
+}
+"""
+
+
+def _bench_c() -> tuple[float, float]:
+    """Encode and decode in mavgen's C [us], compiled with -O2 by the host's compiler or ziglang."""
+    compiler = shutil.which("cc")
+    command = [compiler] if compiler else [sys.executable, "-m", "ziglang", "cc"]
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        generate(dialect_path(), "C", folder / "include")
+        source, program = folder / "bench.c", folder / "bench"
+        source.write_text(C_PROGRAM)
+        flags = ["-O2", "-isystem", str(folder / "include")]
+        subprocess.run([*command, *flags, str(source), "-o", str(program)], check=True)
+        told = subprocess.run([program], check=True, capture_output=True, text=True).stdout
+    encode, decode = map(float, told.split())
+    return encode, decode

@@ -1,0 +1,30 @@
+"""pymavlink's own programs with our dialect: `python -m laglab_protocol.pymavlink mavlogdump LOG`.
+
+The first argument is the name of one of pymavlink's tools, or the path of a program made with
+pymavlink, such as mavproxy.py; the others are passed on, and `--dialect=laglab` with them.
+"""
+
+import os
+import runpy
+import sys
+from pathlib import Path
+
+from laglab_protocol.dialect import offer_to_pymavlink
+
+
+def main(arguments: list[str]) -> None:
+    """Run the program in this process, as if it had been called itself."""
+    if not arguments:
+        sys.exit(__doc__)
+    os.environ["MAVLINK20"] = "1"  # read by pymavlink when it is imported
+    program, *rest = arguments
+    sys.argv = [Path(program).name, "--dialect=laglab", *rest]
+    offer_to_pymavlink()
+    if Path(program).suffix == ".py":
+        runpy.run_path(program, run_name="__main__")
+    else:
+        runpy.run_module(f"pymavlink.tools.{program}", run_name="__main__")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,73 @@
+"""`laglab protocol` and `laglab conform`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from laglab.commands.run import KeyOption
+from laglab_protocol import make_key
+from laglab_protocol.conform import Side
+from laglab_protocol.conform import conform as test_conformance
+from laglab_protocol.dialect import dialect_path
+from laglab_protocol.dialect import generate as generate_code
+from laglab_protocol.lint import lint as find_faults
+
+app = typer.Typer(help="The dialect, for those who write the other side.", no_args_is_help=True)
+
+DialectOption = Annotated[
+    Path | None,
+    typer.Option("--dialect", metavar="FILE", help="Another dialect than laglab's own."),
+]
+
+
+@app.command()
+def lint(
+    file: Annotated[Path | None, typer.Argument(metavar="FILE", help="A dialect's XML.")] = None,
+) -> None:
+    """Refuse what mavgen lets through; without FILE, look at laglab's own dialect."""
+    xml = file or dialect_path()
+    findings = find_faults(xml)
+    for finding in findings:
+        print(f"{xml.name}: {finding.where}: {finding.what}")
+    if findings:
+        raise typer.Exit(1)
+    print(f"{xml.name}: nothing to complain of")
+
+
+@app.command()
+def generate(
+    output: Annotated[
+        Path, typer.Argument(metavar="OUTPUT", help="A folder for C, a file for Python3 and WLua.")
+    ],
+    lang: Annotated[str, typer.Option(metavar="NAME", help="C, Python3, WLua, ...")] = "C",
+    dialect: DialectOption = None,
+) -> None:
+    """Generate code for firmware (C), programs (Python3), or a dissector for Wireshark (WLua)."""
+    generate_code(dialect or dialect_path(), lang, output)
+    print(output)
+
+
+@app.command()
+def keygen(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="Must not exist yet.")],
+) -> None:
+    """Make a key for signing, readable by its owner only."""
+    make_key(file)
+    print(file)
+
+
+def conform(
+    url: Annotated[str, typer.Argument(metavar="URL", help="Where the other side answers.")],
+    side: Annotated[Side, typer.Option(help="What answers there.")],
+    junit: Annotated[
+        Path | None, typer.Option("--junit", metavar="FILE", help="Also write JUnit XML.")
+    ] = None,
+    key: KeyOption = None,
+) -> None:
+    """Test whether the robot, or the controller, at URL speaks the protocol; ends its run."""
+    report = test_conformance(url, side, key)
+    print(report.table())
+    if junit:
+        junit.write_text(report.junit(), encoding="utf-8")
+    raise typer.Exit(0 if report.conforms else 1)

@@ -1,0 +1,106 @@
+"""Fuzzing by coverage, on demand: `pip install laglab[fuzz]`, then
+
+    python tests/protocol/fuzz.py receiver|signed|lint|services [-max_total_time=60]
+
+What CI tries with hypothesis on every run, this tries for as long as it is let: no bytes raise,
+memory stays bounded, and nothing that is not verified changes any state.
+"""
+
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+import atheris
+
+with atheris.instrument_imports(include=["laglab_protocol", "laglab_gateway"]):
+    from laglab_gateway import Safety, Services, standard_parameters
+    from laglab_gateway.services import RobotState
+    from laglab_protocol import DialectError, Receiver, Sender
+    from laglab_protocol.dialect import dialect_path
+    from laglab_protocol.frame import Frame, encode
+    from laglab_protocol.layout import LAYOUT_OF_ID
+    from laglab_protocol.lint import lint
+    from laglab_protocol.messages import Command, End, Estimate, Measurement, Tick
+    from laglab_protocol.signing import Signer, Timestamps, Verifier
+
+LARGEST_FRAME = 10 + 255 + 2 + 13
+REQUESTS = [LAYOUT_OF_ID[number] for number in (4, 20, 21, 23, 75, 76, 111)]
+MESSAGES = [
+    Measurement(1.5, -2.0, 3.0, 0.5, -1.7, 30, 20),
+    Tick(30, 1),
+    Estimate(*[1.0] * 9, tick=30),
+    Command(0.5, -1.0, 30, 1, 1, 1),
+    End(30, 0),
+]
+STREAM = b"".join(encode(message, 1, 1, 0) for message in MESSAGES)
+STRANGER = Sender(1, 1, Signer(bytes(32), (0, 1, 1)))
+SIGNED_STREAM = b"".join(STRANGER.frame(message) for message in MESSAGES)
+DIALECT = dialect_path().read_bytes().replace(b"<include>common.xml</include>", b"")
+STATE = RobotState(0, 1.0, 2.0, 3.0, 0.0, 0.0)
+
+
+def spoiled(good: bytes, data: bytes) -> bytes:
+    """Something good with `data` over a part of it, so that the fuzzer gets in deep."""
+    start = int.from_bytes(data[:2], "little") % len(good)
+    return good[:start] + data[2:] + good[start + len(data[2:]) :]
+
+
+def receiver(data: bytes) -> None:
+    """A spoiled stream, cut anywhere."""
+    cut, data = data[0] if data else 0, spoiled(STREAM, data[1:])
+    under_test = Receiver()
+    frames = under_test.receive(data[:cut]) + under_test.receive(data[cut:])
+    assert len(under_test._rest) < LARGEST_FRAME
+    frames += under_test.end_datagram()
+    assert under_test._rest == b""
+    for frame in frames:
+        encode(frame.message, frame.system, frame.component, frame.sequence)
+
+
+def signed(data: bytes) -> None:
+    """A spoiled stream, of which nothing can be signed with the key."""
+    data = spoiled(SIGNED_STREAM, data)
+    timestamps = Timestamps()
+    under_test = Receiver(Verifier(bytes(range(32)), timestamps, clock=lambda: 10**13))
+    assert under_test.receive(data) + under_test.end_datagram() == []
+    assert timestamps.last == {}
+    assert under_test._expected == {}
+
+
+def linted(data: bytes) -> None:
+    """A spoiled dialect."""
+    data = spoiled(DIALECT, data)
+    with tempfile.NamedTemporaryFile(suffix=".xml") as file:
+        file.write(data)
+        file.flush()
+        try:
+            lint(Path(file.name))
+        except DialectError:
+            return
+
+
+def services(data: bytes) -> None:
+    """Any payload of any request."""
+    if not data:
+        return
+    layout = REQUESTS[data[0] % len(REQUESTS)]
+    payload = data[1:].ljust(layout.size, b"\0")[: layout.size]
+    message = layout.type(*layout.unpack(payload, 0))
+    under_test = Services(standard_parameters(10, 20, Safety()))
+    for answer in under_test.answer(Frame(message, 255, 190, 0, b""), STATE):
+        Sender(1, 1).frame(answer)
+    assert under_test.parameters["DELAY_N"] == 10
+
+
+TARGETS: dict[str, Callable[[bytes], None]] = {
+    "receiver": receiver,
+    "signed": signed,
+    "lint": linted,
+    "services": services,
+}
+
+if __name__ == "__main__":
+    target = TARGETS[sys.argv.pop(1)]
+    atheris.Setup(sys.argv, target)
+    atheris.Fuzz()

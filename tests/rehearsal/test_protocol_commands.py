@@ -1,0 +1,107 @@
+"""Signing, lint, generated code and the conformance kit, as commands."""
+
+import stat
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+Laglab = Callable[..., subprocess.CompletedProcess[str]]
+Start = Callable[..., "subprocess.Popen[str]"]
+ListeningPort = Callable[["subprocess.Popen[str]"], str]
+
+SHORT = ("fig6", "--duration", "0.5")
+
+
+@pytest.fixture
+def key(laglab: Laglab, tmp_path: Path) -> str:
+    made = laglab("protocol", "keygen", "station.key")
+    assert made.returncode == 0
+    assert stat.S_IMODE((tmp_path / "station.key").stat().st_mode) == 0o600
+    return "station.key"
+
+
+def test_a_key_is_never_overwritten(laglab: Laglab, key: str, tmp_path: Path) -> None:
+    before = (tmp_path / key).read_text()
+    again = laglab("protocol", "keygen", key)
+    assert again.returncode == 2
+    assert len(again.stderr.splitlines()) == 1
+    assert (tmp_path / key).read_text() == before
+
+
+@pytest.mark.parametrize("transport", ["inline", "udp"])
+def test_a_signed_run_gives_the_same_trace(
+    laglab: Laglab, key: str, tmp_path: Path, transport: str
+) -> None:
+    options = (*SHORT, "--transport", transport)
+    assert laglab("run", *options, "--out", "open").returncode == 0
+    assert laglab("run", *options, "--key", key, "--out", "signed").returncode == 0
+    traces = [(tmp_path / name / "trace.csv").read_bytes() for name in ("open", "signed")]
+    assert traces[0] == traces[1]
+
+
+def test_a_station_without_the_key_does_not_move_the_robot(
+    start: Start, listening_port: ListeningPort, key: str, tmp_path: Path
+) -> None:
+    gateway = start(
+        "gateway", *SHORT, "--endpoint", "udpin://127.0.0.1:0", "--key", key, "--out", "run"
+    )
+    link = ("--endpoint", f"udpout://127.0.0.1:{listening_port(gateway)}")
+    stranger = start("controller", *SHORT, *link)
+    with pytest.raises(subprocess.TimeoutExpired):
+        gateway.wait(4)
+    assert (tmp_path / "run" / "trace.csv").read_text().count("\n") == 1
+    stranger.kill()
+    start("controller", *SHORT, *link, "--key", key)
+    assert gateway.wait(20) == 0
+
+
+def test_a_gateway_that_strangers_can_reach_wants_a_key(laglab: Laglab) -> None:
+    refused = laglab("gateway", *SHORT, "--endpoint", "udpin://0.0.0.0:0")
+    assert refused.returncode == 2
+    assert "--key" in refused.stderr
+    assert "Traceback" not in refused.stderr
+
+
+def test_lint_passes_our_dialect_and_names_the_faults_of_another(
+    laglab: Laglab, tmp_path: Path
+) -> None:
+    assert laglab("protocol", "lint").returncode == 0
+    (tmp_path / "bad.xml").write_text(
+        '<mavlink><include>common.xml</include><messages><message id="52100" name="lower">'
+        '<field type="double" name="from">f</field></message></messages></mavlink>'
+    )
+    bad = laglab("protocol", "lint", "bad.xml")
+    assert bad.returncode == 1
+    assert "lower" in bad.stdout
+    missing = laglab("protocol", "lint", "none.xml")
+    assert (missing.returncode, len(missing.stderr.splitlines())) == (2, 1)
+
+
+def test_generate_writes_python_that_speaks_our_dialect(laglab: Laglab, tmp_path: Path) -> None:
+    assert laglab("protocol", "generate", "--lang", "Python3", "ours.py").returncode == 0
+    program = "import ours; print(ours.MAVLink_laglab_tick_message.id)"
+    said = subprocess.check_output([sys.executable, "-c", program], cwd=tmp_path, text=True)
+    assert said.strip() == "52100"
+
+
+def test_our_robot_conforms(
+    laglab: Laglab, start: Start, listening_port: ListeningPort, tmp_path: Path
+) -> None:
+    options = ("--duration", "3600", "--silence", "30")
+    gateway = start("gateway", "fig6", *options, "--endpoint", "udpin://127.0.0.1:0")
+    url = f"udpout://127.0.0.1:{listening_port(gateway)}"
+    result = laglab("conform", url, "--side", "robot", "--junit", "robot.xml")
+    assert result.returncode == 0, result.stdout
+    assert "the robot conforms" in result.stdout
+    suite = ElementTree.parse(tmp_path / "robot.xml").getroot()
+    assert suite.get("failures") == "0"
+
+
+def test_nobody_there_does_not_conform(laglab: Laglab) -> None:
+    result = laglab("conform", "udpout://127.0.0.1:9", "--side", "robot")
+    assert result.returncode == 1
+    assert "does not conform" in result.stdout
