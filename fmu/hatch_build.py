@@ -13,7 +13,7 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 HERE = Path(__file__).parent
-FMPY, ZIGLANG = "fmpy>=0.3.27", "ziglang>=0.13"
+FMPY, ZIGLANG = "fmpy>=0.3.30", "ziglang>=0.13"
 
 
 class FmuBuildHook(BuildHookInterface[Any]):
@@ -40,7 +40,7 @@ class FmuBuildHook(BuildHookInterface[Any]):
         build_data["pure_python"] = _for_all_platforms()
         build_data["tag"] = f"py3-none-{_platform_tag()}"
         if version == "standard":
-            for folder in ("src", "content", "bench"):
+            for folder in ("src", "content", "benchmark"):
                 build_data["force_include"][str(HERE / folder)] = f"laglab_fmu/{folder}"
 
 

@@ -98,7 +98,7 @@ Status instance_set_floats(Instance *instance, const uint32_t references[], size
                            size_t size, const char *call);
 /* Booleans, integers and enumerations. `robot` counts from 0. */
 int64_t instance_integer(const Instance *instance, const Variable *variable, size_t robot);
-Status instance_check_integer(const Instance *instance, const Variable *variable, int64_t value, const char *call);
+Status instance_check_integer(const Instance *instance, const Variable *variable, double value, const char *call);
 Status instance_set_integer(Instance *instance, const Variable *variable, size_t robot, int64_t value);
 
 /* Saved states: `*state` is NULL or an earlier one to write over. Serialized ones carry a checksum. */

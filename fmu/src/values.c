@@ -140,9 +140,9 @@ int64_t instance_integer(const Instance *instance, const Variable *variable, siz
     return value;
 }
 
-Status instance_check_integer(const Instance *instance, const Variable *variable, int64_t value, const char *call) {
+Status instance_check_integer(const Instance *instance, const Variable *variable, double value, const char *call) {
     const Status status = check_settable(instance, variable, call);
-    return status == STATUS_OK ? check_range(instance, variable, (double)value, call) : status;
+    return status == STATUS_OK ? check_range(instance, variable, value, call) : status;
 }
 
 Status instance_set_integer(Instance *instance, const Variable *variable, size_t robot, int64_t value) {

@@ -12,7 +12,7 @@ from time import monotonic
 from typing import Any
 
 from laglab.scenario import Scenario
-from laglab.sides import open_robot, open_station
+from laglab.sides import Setup, open_robot, open_station
 from laglab_controller import StationError, run_station
 from laglab_fmu import FmuError
 from laglab_gateway import FileRecorder, GatewayError, Outcome, Patience
@@ -79,19 +79,14 @@ class LoopClock:
 
 
 def gateway_process(
-    scenario: Scenario,
-    url: str,
-    directory: Path,
-    key: Path | None,
-    plant: str | None,
-    reports: Connection,
+    scenario: Scenario, url: str, directory: Path, setup: Setup, reports: Connection
 ) -> None:
     """The robot's side, from opening the endpoint to the last report; SIGTERM ends it in order."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     clock = LoopClock(lambda tick: reports.send(Progress(tick, clock.seconds)))
     try:
         with (
-            open_robot(scenario, key, plant) as serve,
+            open_robot(scenario, setup) as serve,
             closing(FileRecorder(directory)) as recorder,
             open_endpoint(url) as endpoint,
         ):
@@ -103,10 +98,10 @@ def gateway_process(
         reports.send(Failed(str(error)))
 
 
-def station_process(scenario: Scenario, url: str, key: Path | None, reports: Connection) -> None:
+def station_process(scenario: Scenario, url: str, setup: Setup, reports: Connection) -> None:
     """The remote station's side."""
     try:
-        with open_endpoint(url) as endpoint, open_station(scenario, key) as station:
+        with open_endpoint(url) as endpoint, open_station(scenario, setup.key) as station:
             run_station(station, endpoint, scenario.silence_timeout)
     except SIDE_ERRORS as error:
         reports.send(Failed(str(error)))

@@ -23,7 +23,7 @@ from laglab.processes import (
     station_process,
 )
 from laglab.scenario import Scenario
-from laglab.sides import open_gateway, open_station, serve
+from laglab.sides import Setup, open_robot, open_station
 from laglab_gateway import FileRecorder, Outcome, Patience
 
 Transport = Literal["inline", "udp", "serial"]
@@ -48,35 +48,33 @@ def rehearse(
     transport: Transport,
     directory: Path,
     progress: Callable[[int], None],
-    key: Path | None = None,
-    plant: str | None = None,
+    setup: Setup | None = None,
 ) -> Ending:
     """Run both sides to the end; trace, log and scenario are then in `directory`.
 
-    With a `key` every frame is signed, and what is not is refused. The robot is the FMU, or the
-    real one at the address `plant`, but for `inline`.
+    A real robot does not wait for a station, so it cannot be part of an inline run.
     """
+    setup = setup or Setup()
     directory.mkdir(parents=True, exist_ok=True)
     (directory / SCENARIO_FILE).write_text(scenario.to_toml(), encoding="utf-8")
     if transport == "inline":
-        assert plant is None, "a real robot does not wait for a station in this process"
-        return _inline(scenario, directory, progress, key)
+        return _inline(scenario, directory, progress, setup)
     with _gateway_url(transport) as url:
-        return _two_processes(scenario, url, directory, progress, key, plant)
+        return _two_processes(scenario, url, directory, progress, setup)
 
 
 def _inline(
-    scenario: Scenario, directory: Path, progress: Callable[[int], None], key: Path | None
+    scenario: Scenario, directory: Path, progress: Callable[[int], None], setup: Setup
 ) -> Ending:
     clock = LoopClock(progress)
     try:
         with (
-            open_gateway(scenario, key) as gateway,
-            open_station(scenario, key) as station,
+            open_robot(scenario, setup) as serve,
+            open_station(scenario, setup.key) as station,
             closing(FileRecorder(directory)) as recorder,
         ):
             endpoint = InlineEndpoint(station)
-            outcome, statistics = serve(scenario, gateway, endpoint, recorder, Patience(), clock)
+            outcome, statistics = serve(endpoint, recorder, Patience(), clock)
     except SIDE_ERRORS as error:
         return Ending(None, str(error), clock.seconds, {})
     return Ending(outcome, None, clock.seconds, statistics)
@@ -102,17 +100,16 @@ def _two_processes(
     url: str,
     directory: Path,
     progress: Callable[[int], None],
-    key: Path | None,
-    plant: str | None,
+    setup: Setup,
 ) -> Ending:
     notice = scenario.silence_timeout + NOTICE_SECONDS
-    with started("gateway", gateway_process, scenario, url, directory, key, plant) as gateway:
+    with started("gateway", gateway_process, scenario, url, directory, setup) as gateway:
         match gateway.next_report():
             case Listening(address):
                 station_url = far_end(address)
             case report:
                 return _ending(report, [], 0.0)
-        with started("controller", station_process, scenario, station_url, key) as station:
+        with started("controller", station_process, scenario, station_url, setup) as station:
             try:
                 return _follow(gateway, station, notice, progress)
             except KeyboardInterrupt:

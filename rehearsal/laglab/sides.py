@@ -3,9 +3,10 @@
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -26,7 +27,6 @@ from laglab_gateway import (
     RecordedFates,
     Recorder,
     Relay,
-    RobotSide,
     Services,
     Timesyncing,
     Watch,
@@ -47,6 +47,18 @@ from laglab_protocol import (
     open_endpoint,
     refuse_open_door,
 )
+
+
+@dataclass(frozen=True)
+class Setup:
+    """What a run needs besides its scenario."""
+
+    plant: str | None = None
+    """The address of the real robot; None: the FMU."""
+    key: Path | None = None
+    """The file of the key that signs every frame between gateway and station."""
+    unsigned: bool = False
+    """Whether strangers may reach the real robot's own link, which is never signed."""
 
 
 def robot_parameters(scenario: Scenario) -> RobotParameters:
@@ -128,7 +140,7 @@ def serve(
     watchers: Sequence[Endpoint] = (),
 ) -> tuple[Outcome, dict[str, Any]]:
     """Run the robot's side at the scenario's pace: how it ended, and what the stamps tell."""
-    watch = watch_of(gateway, watchers)
+    watch = _watch(gateway.services, watchers)
     if scenario.pace == "lockstep":
         outcome = serve_lockstep(gateway, endpoint, recorder, patience, progress, watch)
         return outcome, {"link": gateway.audit.report()}
@@ -140,10 +152,9 @@ def serve(
     return outcome, {"link": link, "timing": lateness.report()}
 
 
-def watch_of(side: RobotSide, watchers: Sequence[Endpoint]) -> Watch:
-    """Ground stations that look on, unsigned, on links of their own."""
+def _watch(services: Services, watchers: Sequence[Endpoint]) -> Watch:
     codecs = (Codec(ROBOT_SYSTEM, ROBOT_COMPONENT) for _ in watchers)
-    return Watch(side.services, list(map(Watcher, watchers, codecs)))
+    return Watch(services, list(map(Watcher, watchers, codecs)))
 
 
 def clock_audit(services: Services) -> dict[str, float] | None:
@@ -162,8 +173,9 @@ def clock_audit(services: Services) -> dict[str, float] | None:
 
 
 def serve_real(
-    relay: Relay,
+    scenario: Scenario,
     robot: Endpoint,
+    codec: Codec,
     endpoint: Endpoint,
     recorder: Recorder,
     patience: Patience,
@@ -171,45 +183,30 @@ def serve_real(
     watchers: Sequence[Endpoint] = (),
 ) -> tuple[Outcome, dict[str, Any]]:
     """Be the link in front of a real robot, at its own pace; as `serve`."""
-    watch = watch_of(relay, watchers)
+    services = robot_services(scenario, free_running=True, placeable=False)
+    relay = Relay(gateway_config(scenario), services, link_fates(scenario), codec)
+    watch = _watch(services, watchers)
     outcome = serve_remote(relay, robot, endpoint, recorder, patience, progress, watch)
-    return outcome, {"link": relay.audit.report() | {"timesync": clock_audit(relay.services)}}
+    return outcome, {"link": relay.audit.report() | {"timesync": clock_audit(services)}}
 
 
-class Serve(Protocol):
-    """`serve` or `serve_real`, given all but what is on the station's side."""
-
-    def __call__(
-        self,
-        endpoint: Endpoint,
-        recorder: Recorder,
-        patience: Patience,
-        progress: Callable[[int], None],
-        watchers: Sequence[Endpoint] = (),
-    ) -> tuple[Outcome, dict[str, Any]]: ...
+Serve = Callable[..., tuple[Outcome, dict[str, Any]]]
+"""`serve` or `serve_real`, given all but what is on the station's side."""
 
 
 @contextmanager
-def open_robot(
-    scenario: Scenario, key: Path | None, plant: str | None, unsigned: bool = False
-) -> Iterator[Serve]:
-    """The robot's side: the FMU, or the real robot at the address `plant`.
-
-    The key is for the station's link; the robot's own link must be out of strangers' reach, or
-    `unsigned` in so many words.
-    """
-    if plant is None:
-        with open_gateway(scenario, key) as gateway:
+def open_robot(scenario: Scenario, setup: Setup) -> Iterator[Serve]:
+    """The robot's side: the FMU, or the real robot."""
+    if setup.plant is None:
+        with open_gateway(scenario, setup.key) as gateway:
             yield partial(serve, scenario, gateway)
-        return
-    with (
-        open_endpoint(plant) as robot,
-        Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, key) as codec,
-    ):
-        refuse_open_door(robot, None, unsigned)
-        services = robot_services(scenario, free_running=True, placeable=False)
-        relay = Relay(gateway_config(scenario), services, link_fates(scenario), codec)
-        yield partial(serve_real, relay, robot)
+    else:
+        with (
+            open_endpoint(setup.plant) as robot,
+            Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, setup.key) as codec,
+        ):
+            refuse_open_door(robot, None, setup.unsigned)
+            yield partial(serve_real, scenario, robot, codec)
 
 
 def robot_model(scenario: Scenario) -> RobotModel:

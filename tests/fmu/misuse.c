@@ -56,7 +56,7 @@ static size_t prepare(void) {
         floats[i] = number();
         integers[i] = (int32_t)draw(5) - 1;
         longs[i] = (int64_t)draw(5) - 1;
-        unsigneds[i] = draw(4);
+        unsigneds[i] = draw(9) ? draw(4) : UINT64_MAX - draw(4);
         booleans2[i] = (int)draw(2);
         booleans[i] = !booleans2[i];
     }

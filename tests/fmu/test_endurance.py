@@ -1,33 +1,52 @@
 """Nothing grows, however often a robot is started."""
 
+import ctypes
 import gc
-import os
 import sys
 import tempfile
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
 from laglab_fmu import Robot, RobotParameters
 
 PROCESS = Path("/proc/self")
-KILOBYTE = 1024
-pytestmark = pytest.mark.skipif(not PROCESS.is_dir(), reason="counts by /proc")
 
 
-def resident() -> int:
-    """Bytes of memory in use."""
+class Heap(ctypes.Structure):
+    """What glibc's mallinfo2 gives; `uordblks` is the bytes in use."""
+
+    _fields_ = [
+        *((f"not_needed_{i}", ctypes.c_size_t) for i in range(7)),
+        ("uordblks", ctypes.c_size_t),
+        *((f"nor_needed_{i}", ctypes.c_size_t) for i in range(2)),
+    ]
+
+
+C_LIBRARY = ctypes.CDLL(None) if PROCESS.is_dir() else None
+pytestmark = pytest.mark.skipif(not hasattr(C_LIBRARY, "mallinfo2"), reason="counts by glibc")
+
+
+class Use(NamedTuple):
+    """What this process holds."""
+
+    heap: int
+    blocks: int
+    handles: int
+    mappings: int
+
+
+def use() -> Use:
     gc.collect()
-    return int((PROCESS / "statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
-
-
-def handles() -> int:
-    return len(list((PROCESS / "fd").iterdir()))
-
-
-def mappings() -> int:
-    """Parts of memory that are mapped, each loaded library being several."""
-    return len((PROCESS / "maps").read_text().splitlines())
+    mallinfo = C_LIBRARY.mallinfo2  # type: ignore[union-attr]
+    mallinfo.restype = Heap
+    return Use(
+        heap=mallinfo().uordblks,
+        blocks=sys.getallocatedblocks(),
+        handles=len(list((PROCESS / "fd").iterdir())),
+        mappings=len((PROCESS / "maps").read_text().splitlines()),
+    )
 
 
 def open_and_close(version: int, runs: int) -> None:
@@ -39,29 +58,34 @@ def open_and_close(version: int, runs: int) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("version", [2, 3])
 def test_opening_and_closing(version: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """After a start in which the interpreter's own pools fill."""
+    """One instance is some 500 bytes of C heap; a robot kept alive, many Python blocks."""
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    open_and_close(version, 150)
-    before = resident(), handles(), mappings()
-    open_and_close(version, 350)
-    assert (resident() - before[0]) / 350 < 4 * KILOBYTE
-    assert handles() == before[1]
-    assert abs(mappings() - before[2]) < 20
+    runs = 200
+    open_and_close(version, 100)
+    before = use()
+    open_and_close(version, runs)
+    after = use()
+    assert (after.heap - before.heap) / runs < 200
+    assert (after.blocks - before.blocks) / runs < 2
+    assert after.handles == before.handles
+    assert abs(after.mappings - before.mappings) < 20
     assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("version", [2, 3])
 def test_ten_thousand_runs_by_reset(version: int) -> None:
+    runs = 10_000
     with Robot.open(version, RobotParameters()) as robot:
         first = robot.step(1.0, 2.0)
-        for _ in range(1000):
+        for _ in range(500):
             robot.reset(RobotParameters())
-        before = resident(), handles(), sys.getallocatedblocks()
-        for seed in range(10_000):
+        before = use()
+        for seed in range(runs):
             robot.reset(RobotParameters(seed=seed))
             robot.step(1.0, 2.0)
-        assert (resident() - before[0]) / 10_000 < 100
-        assert handles() == before[1]
-        assert abs(sys.getallocatedblocks() - before[2]) < 1000
+        after = use()
+        assert (after.heap - before.heap) / runs < 5
+        assert (after.blocks - before.blocks) / runs < 0.1
+        assert after.handles == before.handles
         robot.reset(RobotParameters())
         assert robot.step(1.0, 2.0) == first

@@ -49,7 +49,7 @@ def compile_program(sources: Path, program: Path, main: str, *arguments: str) ->
 def misuse(sources: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """All sources and misuse.c under the sanitizers that the compiler has."""
     program = tmp_path_factory.mktemp("misuse") / "misuse"
-    kinds = "address,undefined" if host_compiler() else "undefined"
+    kinds = "address,undefined,float-cast-overflow" if host_compiler() else "undefined"
     flags = ["-O1", "-g", f"-fsanitize={kinds}", "-fno-sanitize-recover=all"]
     compile_program(sources, program, "misuse.c", *flags, *map(str, sources.glob("*.c")), "-lm")
     return program

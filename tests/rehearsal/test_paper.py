@@ -53,7 +53,7 @@ def test_fig8_popf_deviates_less_than_ekf_in_all_three(rehearsed: Rehearsed) -> 
 def test_fig8_replays_to_what_the_loop_estimated(rehearsed: Rehearsed, tmp_path: Path) -> None:
     rehearsed("fig8")
     trace = read_trace(tmp_path / "run" / "trace.csv")
-    replayed = reestimate(load("fig8"), "popf", trace)
+    replayed = reestimate(load("fig8"), "popf", trace).estimates
     np.testing.assert_array_equal(replayed, loop_estimates(trace))
 
 

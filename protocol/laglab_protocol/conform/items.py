@@ -23,8 +23,20 @@ class Item(Generic[AnySession]):
 
 
 def carry_out(items: Iterable[Item[AnySession]], session: AnySession) -> tuple[Result, ...]:
-    """Every item in its turn; one that fails does not keep the others from being tried."""
-    return tuple(_result(item, session) for item in items)
+    """Every item in its turn; one that fails does not keep the others from being tried.
+
+    Only without the first, that the peer is there at all, is there nothing to try them on.
+    """
+    first, *others = items
+    found = _result(first, session)
+    if found.verdict is Verdict.FAILED:
+        return found, *(_not_tried(item) for item in others)
+    return found, *(_result(item, session) for item in others)
+
+
+def _not_tried(item: Item[AnySession]) -> Result:
+    reason = "not tried: the peer was not found"
+    return Result(item.group, item.name, item.mandatory, Verdict.SKIPPED, reason, 0.0)
 
 
 def _result(item: Item[AnySession], session: AnySession) -> Result:

@@ -9,6 +9,7 @@ from rich.table import Table
 from laglab.bench import filter as filter_bench
 from laglab.bench import loop as loop_bench
 from laglab_fmu import bench as fmu_bench
+from laglab_protocol import bench as codec_bench
 
 app = typer.Typer(help="Ratios, measured side by side in one run.", no_args_is_help=True)
 
@@ -46,6 +47,21 @@ def bench_filter(
     console.print(filter_bench.timings_table(title, whole, "ekf"))
     if not has_filterpy:
         console.print("filterpy is not installed: `pip install filterpy` adds its EKF")
+
+
+@app.command("codec")
+def bench_codec(
+    rounds: Annotated[int, typer.Option(min=1, help="Blocks of messages of each codec.")] = 100,
+) -> None:
+    """Encode and decode, signed and not: our codec, pymavlink's, and mavgen's C."""
+    with Console(stderr=True).status("encoding and decoding"):
+        rows = codec_bench.bench_codec(rounds)
+    table = Table("", "ours, µs", "pymavlink, µs", "times faster", "C, µs", title="one message")
+    for row in rows:
+        c = f"{row.c_us:.2f}" if row.c_us else ""
+        ratio = f"{row.times_faster:.1f}"
+        table.add_row(row.what, f"{row.ours_us:.2f}", f"{row.pymavlink_us:.2f}", ratio, c)
+    Console().print(table)
 
 
 @app.command("fmu")

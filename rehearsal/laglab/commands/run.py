@@ -12,6 +12,7 @@ from laglab.options import on_scenario
 from laglab.rehearse import Ending, Transport, rehearse
 from laglab.report import results_table, warnings, write_results
 from laglab.scenario import Scenario
+from laglab.sides import Setup
 from laglab_gateway import TRACE_FILE, Trace, TraceError, read_trace
 from laglab_protocol import EndReason
 
@@ -26,17 +27,16 @@ KeyOption = Annotated[
     Path | None,
     typer.Option("--key", metavar="FILE", help="Sign every frame; `laglab protocol keygen`."),
 ]
-OutOption = Annotated[
-    Path | None,
-    typer.Option("--out", metavar="DIR", help="Where the results go; runs/SCENARIO otherwise."),
-]
-
 PlantOption = Annotated[
     str | None,
     typer.Option(
         metavar="URL",
         help="The real robot's link, such as serial:///dev/ttyX:BAUD: its clock sets the pace.",
     ),
+]
+OutOption = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Where the results go; runs/SCENARIO otherwise."),
 ]
 
 
@@ -53,16 +53,12 @@ def run(
     """Rehearse SCENARIO: robot and controller, the delayed link between them, and the verdict."""
     if plant is not None and transport == "inline":
         raise ScenarioError("--plant: a real robot does not wait: take --transport udp or serial")
+    setup = Setup(plant, key)
     directory = out or fresh_directory(Path("runs"), scenario.name)
     with progress_bar() as bar:
         task = bar.add_task(scenario.name, total=scenario.last_tick)
         ending = rehearse(
-            scenario,
-            transport,
-            directory,
-            lambda tick: bar.update(task, completed=tick),
-            key,
-            plant,
+            scenario, transport, directory, lambda tick: bar.update(task, completed=tick), setup
         )
         if ending.outcome:
             bar.update(task, completed=ending.outcome.tick)

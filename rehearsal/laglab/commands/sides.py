@@ -11,7 +11,7 @@ from rich.console import Console
 from laglab.commands.run import EXIT_CODES, KeyOption, PlantOption, progress_bar
 from laglab.options import on_scenario
 from laglab.scenario import Scenario
-from laglab.sides import open_robot, open_station
+from laglab.sides import Setup, open_robot, open_station
 from laglab_controller import run_station
 from laglab_gateway import FileRecorder, NoRecorder, Patience
 from laglab_protocol import Endpoint, EndReason, open_endpoint, refuse_open_door
@@ -38,14 +38,14 @@ def gateway(
         Path | None,
         typer.Option("--out", metavar="DIR", help="Where trace.csv and robot.tlog go."),
     ] = None,
+    plant: PlantOption = None,
     key: KeyOption = None,
     unsigned: UnsignedOption = False,
-    plant: PlantOption = None,
 ) -> None:
     """Be the robot's side of SCENARIO: wait for a controller, run to the end."""
     console = Console(stderr=True)
     with (
-        open_robot(scenario, key, plant, unsigned) as serve,
+        open_robot(scenario, Setup(plant, key, unsigned)) as serve,
         closing(FileRecorder(out) if out else NoRecorder()) as recorder,
         open_endpoint(endpoint) as link,
         _watchers(watch or [], unsigned) as watchers,
