@@ -47,6 +47,7 @@ from laglab_protocol import (
     Codec,
     Endpoint,
     open_endpoint,
+    refuse_open_door,
 )
 
 
@@ -60,6 +61,8 @@ class Setup:
     """The file of the key that signs every frame between gateway and station."""
     armed: bool = True
     """Whether the robot may move before a ground station says so."""
+    unsigned: bool = False
+    """Whether strangers may reach the real robot's own link, which is never signed."""
 
 
 def robot_parameters(scenario: Scenario) -> RobotParameters:
@@ -228,6 +231,7 @@ def open_robot(scenario: Scenario, setup: Setup) -> Iterator[Serve]:
             open_endpoint(setup.plant) as robot,
             Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, setup.key) as codec,
         ):
+            refuse_open_door(robot, None, setup.unsigned)
             yield partial(serve_real, scenario, robot, codec, setup.armed)
 
 
