@@ -11,6 +11,7 @@ from laglab.commands import (
     errata,
     fmu,
     protocol,
+    replay,
     run,
     scenarios,
     serial,
@@ -30,6 +31,7 @@ app = typer.Typer(
     add_completion=False,
 )
 app.command("run")(run.run)
+app.command("replay")(replay.replay)
 app.command("scenarios")(scenarios.scenarios)
 app.command("compare")(compare.compare)
 app.command("consistency")(consistency.consistency)
