@@ -1,7 +1,7 @@
 """How fast the loop is, against a bare echo of its bytes and against the same loop by hand."""
 
 import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from statistics import median
 from typing import Any, NamedTuple
@@ -46,9 +46,11 @@ def loop_scenario(estimator: str, ticks: int) -> Scenario:
     )
 
 
-def measure(rounds: int, ticks: int, progress: Progress) -> dict[Case, Times]:
+def measure(
+    rounds: int, ticks: int, progress: Progress, transports: Sequence[Transport] = TRANSPORTS
+) -> dict[Case, Times]:
     """Medians over the rounds, in each of which every way is measured once, one after another."""
-    cases = [(transport, estimator) for transport in TRANSPORTS for estimator in ESTIMATORS]
+    cases = [(transport, estimator) for transport in transports for estimator in ESTIMATORS]
     taken: dict[Case, list[Times]] = {case: [] for case in cases}
     for number in range(1, rounds + 1):
         for transport, estimator in cases:

@@ -1,6 +1,6 @@
 """`laglab bench`: ratios, measured side by side in one run."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 from rich.console import Console
@@ -9,6 +9,8 @@ from rich.table import Table
 from laglab.bench import filter as filter_bench
 from laglab.extras import STEPPING, require
 from laglab_protocol import bench as codec_bench
+
+Link = Literal["udp", "serial"]
 
 app = typer.Typer(help="Ratios, measured side by side in one run.", no_args_is_help=True)
 
@@ -20,6 +22,9 @@ def bench_loop(
     ] = 5,
     ticks: Annotated[int, typer.Option(min=100, help="Ticks of each measurement.")] = 2000,
     realtime: Annotated[float, typer.Option(min=1.0, help="Seconds of real-time pacing.")] = 5.0,
+    link: Annotated[
+        list[Link] | None, typer.Option(help="Only over this; may be repeated.")
+    ] = None,
 ) -> None:
     """The lock-step loop over UDP and a pty, against a bare echo and against one by hand."""
     require(STEPPING)
@@ -27,7 +32,7 @@ def bench_loop(
 
     console = Console()
     with Console(stderr=True).status("") as status:
-        measured = loop_bench.measure(rounds, ticks, status.update)
+        measured = loop_bench.measure(rounds, ticks, status.update, link or loop_bench.TRANSPORTS)
         status.update("real time")
         timing = loop_bench.measure_lateness(realtime)
     console.print(loop_bench.times_table(measured), crop=False)
