@@ -22,9 +22,7 @@ def bench_loop(
     ] = 5,
     ticks: Annotated[int, typer.Option(min=100, help="Ticks of each measurement.")] = 2000,
     realtime: Annotated[float, typer.Option(min=1.0, help="Seconds of real-time pacing.")] = 5.0,
-    link: Annotated[
-        list[Link] | None, typer.Option(help="Only over this; may be repeated.")
-    ] = None,
+    link: Annotated[Link | None, typer.Option(help="Only over this one.")] = None,
 ) -> None:
     """The lock-step loop over UDP and a pty, against a bare echo and against one by hand."""
     require(STEPPING)
@@ -32,7 +30,8 @@ def bench_loop(
 
     console = Console()
     with Console(stderr=True).status("") as status:
-        measured = loop_bench.measure(rounds, ticks, status.update, link or loop_bench.TRANSPORTS)
+        links = (link,) if link else loop_bench.TRANSPORTS
+        measured = loop_bench.measure(rounds, ticks, status.update, links)
         status.update("real time")
         timing = loop_bench.measure_lateness(realtime)
     console.print(loop_bench.times_table(measured), crop=False)
