@@ -14,6 +14,7 @@ from laglab.commands import (
     replay,
     run,
     scenarios,
+    serial,
     sides,
 )
 from laglab.errors import LaglabError, RunError, ScenarioError
@@ -37,6 +38,7 @@ app.command("consistency")(consistency.consistency)
 app.command("errata")(errata.errata)
 app.command("gateway")(sides.gateway)
 app.command("controller")(sides.controller)
+app.command("serial")(serial.serial)
 app.add_typer(bench.app, name="bench")
 app.add_typer(fmu.app, name="fmu")
 app.add_typer(protocol.app, name="protocol")
