@@ -35,7 +35,7 @@ from laglab_gateway.services import (
     Timesyncing,
     standard_parameters,
 )
-from laglab_gateway.side import GatewayConfig, Outcome
+from laglab_gateway.side import GatewayConfig, Outcome, RobotSide
 from laglab_gateway.timeline import Direction, Event
 from laglab_gateway.trace import Trace, TraceRow, read_trace
 from laglab_gateway.watch import Watch, Watcher
@@ -70,6 +70,7 @@ __all__ = [
     "RecordedFates",
     "Recorder",
     "Relay",
+    "RobotSide",
     "RobotSilentError",
     "Safety",
     "Services",

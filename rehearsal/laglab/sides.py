@@ -47,6 +47,7 @@ from laglab_protocol import (
     Codec,
     Endpoint,
     open_endpoint,
+    refuse_open_door,
 )
 
 
@@ -60,6 +61,8 @@ class Setup:
     """The file of the key that signs every frame between gateway and station."""
     armed: bool = True
     """Whether the robot may move before a ground station says so."""
+    unsigned: bool = False
+    """Whether strangers may reach the real robot's own link, which is never signed."""
 
 
 def robot_parameters(scenario: Scenario) -> RobotParameters:
@@ -228,6 +231,7 @@ def open_robot(scenario: Scenario, setup: Setup) -> Iterator[Serve]:
             open_endpoint(setup.plant) as robot,
             Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, setup.key) as codec,
         ):
+            refuse_open_door(robot, None, setup.unsigned)
             yield partial(serve_real, scenario, robot, codec, setup.armed)
 
 
@@ -261,6 +265,13 @@ def station_config(scenario: Scenario) -> StationConfig:
         initial_covariance=scenario.initial_covariance * np.eye(3),
         command_delay=scenario.command_delay,
     )
+
+
+def station_statistics(station: Station) -> dict[str, Any]:
+    """The station's own report, for the summary."""
+    n, m, times, warnings = station.report()
+    timed = {f"tick_{name}_s": value for name, value in times._asdict().items()} if times else {}
+    return {"station": {"n_seen": n, "m_seen": m, **timed, "warnings": list(warnings)}}
 
 
 @contextmanager

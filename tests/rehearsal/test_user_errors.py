@@ -30,6 +30,7 @@ WRONG = [
     (["controller", "fig6", "--endpoint", "serial:///dev/ttyNONE9:57600"], "/dev/ttyNONE9"),
     (["run", "lab", "--transport", "inline", "--plant", "pty://p"], "--plant: a real robot does"),
     (["gateway", "lab", "--plant", "/dev/ttyNONE9,57600"], "/dev/ttyNONE9"),
+    (["gateway", "lab", "--plant", "udpin://0.0.0.0:0"], "can be reached from outside"),
     (["compare", "nowhere"], "nowhere"),
 ]
 

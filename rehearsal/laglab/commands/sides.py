@@ -48,7 +48,7 @@ def gateway(
     """Be the robot's side of SCENARIO: wait for a controller, run to the end."""
     console = Console(stderr=True)
     with (
-        open_robot(scenario, Setup(plant, key, armed=not disarmed)) as serve,
+        open_robot(scenario, Setup(plant, key, not disarmed, unsigned)) as serve,
         closing(FileRecorder(out) if out else NoRecorder()) as recorder,
         open_endpoint(endpoint) as link,
         _watchers(watch or [], unsigned) as watchers,
