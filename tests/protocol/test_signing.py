@@ -310,6 +310,12 @@ def test_spoiled_timestamps_are_not_forgotten_quietly(tmp_path: Path, text: str)
         StoredTimestamps(path)
 
 
+def test_timestamps_that_cannot_be_kept_are_said(tmp_path: Path) -> None:
+    timestamps = StoredTimestamps(tmp_path / "gone" / "timestamps")
+    with pytest.raises(KeyFileError, match="cannot keep"):
+        timestamps.reserve(STREAM, NOW)
+
+
 def test_an_open_door_is_refused(key_file: Path) -> None:
     with open_endpoint("udpin://0.0.0.0:0") as outside, open_endpoint("udpin://:0") as inside:
         with pytest.raises(UnsignedLinkError, match="--unsigned"):
