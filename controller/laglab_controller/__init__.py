@@ -17,7 +17,10 @@ from laglab_controller.popf import Popf
 from laglab_controller.replay import Replay, constant_delay, replay
 from laglab_controller.rewinding import Rewinding
 from laglab_controller.robot import RobotModel
+from laglab_controller.session import Heard, read_session
+from laglab_controller.shadow import Shadow, shadow
 from laglab_controller.station import Station
+from laglab_controller.watch import StationReport, TickTimes, delay_limit
 from laglab_controller.windows import ReplayedInputs, RigidMotions
 
 __all__ = [
@@ -32,6 +35,7 @@ __all__ = [
     "Ekf",
     "Erratum",
     "Estimator",
+    "Heard",
     "Law",
     "Measured",
     "Model",
@@ -45,12 +49,18 @@ __all__ = [
     "RigidMotions",
     "RobotModel",
     "RobotSilentError",
+    "Shadow",
     "State",
     "Station",
     "StationConfig",
     "StationError",
+    "StationReport",
+    "TickTimes",
     "constant_delay",
+    "delay_limit",
+    "read_session",
     "replay",
     "run_station",
+    "shadow",
     "wrap",
 ]

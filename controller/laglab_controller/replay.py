@@ -36,17 +36,17 @@ def replay(
     shape = (len(inputs) + 1, len(x))
     answer = Replay(*(np.full(s, np.nan) for s in (shape, (*shape, len(x)), shape[:1])))
     state = estimator.start(x, P)
-    for k, measurements in zip(range(len(inputs) + 1), arrivals, strict=True):
-        if k > 0:
-            state = estimator.predict(state, inputs[k - 1])
-        state = estimator.correct(state, measurements)
-        if state.x is None:
-            continue
-        if not np.all(np.isfinite(state.x)):
-            break
-        answer.estimates[k] = state.x
-        answer.covariances[k] = np.nan if state.P is None else state.P
-        answer.nis[k] = _squared(estimator.innovation(state)) if measurements else np.nan
+    with np.errstate(over="ignore", invalid="ignore"):  # what diverges is cut off below
+        for k, measurements in zip(range(len(inputs) + 1), arrivals, strict=True):
+            state = estimator.predict(state, inputs[k - 1]) if k > 0 else state
+            state = estimator.correct(state, measurements)
+            if state.x is None:
+                continue
+            if not np.all(np.isfinite(state.x)):
+                break
+            answer.estimates[k] = state.x
+            answer.covariances[k] = np.nan if state.P is None else state.P
+            answer.nis[k] = _squared(estimator.innovation(state)) if measurements else np.nan
     return answer
 
 

@@ -1,14 +1,16 @@
 """The station's side of the link without I/O: the robot's bytes in, the answer's bytes out."""
 
+from array import array
 from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
 from laglab_controller.controller import Control, Controller, StationConfig, diverged
-from laglab_controller.estimator import Measured, State
-from laglab_controller.flight import Echo
+from laglab_controller.estimator import State
+from laglab_controller.hearing import echoes, measured
 from laglab_controller.joining import Rest, observe, prior
+from laglab_controller.watch import StationReport, gain_warning, tick_times
 from laglab_protocol import (
     STATION_COMPONENT,
     STATION_SYSTEM,
@@ -45,7 +47,7 @@ class Station:
         clock: Callable[[], int] | None = None,
         codec: Codec | None = None,
     ) -> None:
-        """`clock` [ns] is what TIMESYNC is answered by; without one it is not answered."""
+        """`clock` [ns] times the ticks and answers TIMESYNC; without one neither is done."""
         codec = codec or Codec(STATION_SYSTEM, STATION_COMPONENT)
         self._config = config
         self._make_controller = controller
@@ -62,6 +64,8 @@ class Station:
         self._outcome: End | None = None
         self._closed = False
         self._measurement_delay: int | None = None
+        self._times = array("q")
+        self._warning: str | None = None
 
     @property
     def outcome(self) -> End | None:
@@ -78,15 +82,14 @@ class Station:
         """The last tick that was answered; None before the first."""
         return self._tick
 
-    @property
-    def command_delay(self) -> int:
-        """n [ticks], as the robot's echoes have it; what the station was told before the first."""
-        return self._control.flight.command_delay
-
-    @property
-    def measurement_delay(self) -> int | None:
-        """m [ticks] of the last measurement; None before the first."""
-        return self._measurement_delay
+    def report(self) -> StationReport:
+        """How the run went so far."""
+        return StationReport(
+            self._control.flight.command_delay,
+            self._measurement_delay,
+            tick_times(self._times),
+            warnings=(self._warning,) if self._warning else (),
+        )
 
     def heartbeat(self) -> bytes:
         """The frame that makes the station known to the robot."""
@@ -148,10 +151,16 @@ class Station:
         if message.tick == self._tick:
             return self._framed()
         if self._outcome is None and (self._tick is None or message.tick > self._tick):
-            with np.errstate(over="ignore", invalid="ignore"):  # what follows is seen as diverged
-                self._advance(message.tick, measurements)
+            self._advance_timed(message.tick, measurements)
             return self._framed()
         return b""
+
+    def _advance_timed(self, tick: int, measurements: list[Measurement]) -> None:
+        started = self._clock() if self._clock else 0
+        with np.errstate(over="ignore", invalid="ignore"):  # what follows is seen as diverged
+            self._advance(tick, measurements)
+        if self._clock:
+            self._times.append(self._clock() - started)
 
     def _advance(self, tick: int, measurements: list[Measurement]) -> None:
         if self._joining is None:
@@ -188,29 +197,16 @@ class Station:
         control = self._control
         for _ in range(0 if self._tick is None else tick - self._tick):
             control = self._controller.advance(control)
-        arrived = [
-            Measured(message.tick - self._first, np.array(message[:3]))
-            for message in measurements
-            if self._first <= message.tick <= tick
-        ]
+        arrived = measured(measurements, self._first, tick)
         if arrived:
             self._measurement_delay = tick - self._first - arrived[-1].tick
-        self._control = self._controller.answer(control, arrived, self._echoes(tick, measurements))
+        told = echoes(measurements, self._first, tick)
+        self._control = self._controller.answer(control, arrived, told)
         self._tick = tick
         self._answer = self._messages(tick, self._control)
-
-    def _echoes(self, tick: int, measurements: list[Measurement]) -> list[Echo]:
-        """The command in force just before each was sampled, by what the robot says of it."""
-        first = self._first
-        return [
-            Echo(
-                message.tick - first - 1,
-                np.array((message.v, message.omega)),
-                message.command_tick - first if message.command_tick >= first else None,
-            )
-            for message in measurements
-            if first < message.tick <= tick
-        ]
+        if arrived and self._warning is None:
+            late = max(tick - self._first - measurement.tick for measurement in arrived)
+            self._warning = gain_warning(self._control.estimate, tick, late)
 
     def _messages(self, tick: int, control: Control) -> list[Message]:
         estimates = _estimate(tick, control.estimate)

@@ -16,6 +16,9 @@ TIMESYNC_TICKS = 10
 END_TRIES = 5
 """A lost END only costs the station its silence timeout, so a few tries are enough."""
 
+STREAM_SILENCE = 0.05
+"""[s] Bytes that follow each other on a serial line, however slow, come sooner than this."""
+
 
 @dataclass(frozen=True)
 class Patience:
@@ -67,6 +70,7 @@ class Conversation:
         self._patience = patience
         self._watch = watch or Watch(gateway.services, [])
         self._heard, self._heard_tick = now(), 0
+        self._last_byte = self._heard
 
     def wait_for_station(self) -> None:
         """Until the station's first heartbeat. Raises StationSilentError."""
@@ -83,13 +87,8 @@ class Conversation:
         self._endpoint.send(b"".join(frames))
         self._recorder.frames(self._gateway.time_us, frames)
 
-    def send_tick(self) -> None:
-        """Open the tick, and use the time in which the station thinks."""
-        self.send(self._gateway.open_tick())
-        self._catch_up()
-
-    def _catch_up(self) -> None:
-        """Write down what was before, look after everybody else."""
+    def catch_up(self) -> None:
+        """While the station thinks: write down what was, look after everybody else."""
         self._recorder.flush()
         self._look_around()
 
@@ -102,14 +101,20 @@ class Conversation:
     def listen(self, timeout: float) -> None:
         """Take what arrives, for at most `timeout` [s]."""
         data = self._endpoint.receive(timeout)
-        # A silence ends an unfinished frame on a stream as the datagram's end does on UDP.
-        frames = self._gateway.receive(data, whole=self._endpoint.datagrams or not data)
+        frames = self._gateway.receive(data, whole=self._endpoint.datagrams or self._silent(data))
         if any(from_station(frame) for frame in frames):
             self._endpoint.accept_peer()
             self._heard, self._heard_tick = self.now(), self._gateway.tick
         self._recorder.frames(self._gateway.time_us, [frame.raw for frame in frames])
         if not self._gateway.answered:
             self._look_around()
+
+    def _silent(self, data: bytes) -> bool:
+        """On a stream a silence ends an unfinished frame, as the datagram's end does on UDP."""
+        now = self.now()
+        if data:
+            self._last_byte = now
+        return now - self._last_byte >= STREAM_SILENCE
 
     def _look_around(self) -> None:
         """Send what others than the loop asked for, and look after those who watch."""
@@ -144,7 +149,7 @@ class Conversation:
 
     def say_goodbye(self, outcome: Outcome) -> None:
         """Tell the station, and give it a few chances to say that it heard."""
-        self._catch_up()
+        self.catch_up()
         for _ in range(END_TRIES):
             self.send([self._gateway.end(outcome.reason)])
             if self.listen_for(lambda: self._gateway.station_end is not None):

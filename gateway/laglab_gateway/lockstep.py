@@ -43,7 +43,8 @@ def serve_lockstep(
 
 def _exchange(gateway: Gateway, conversation: Conversation) -> None:
     """Send this tick until it is answered; the station answers a repeat with the same."""
-    conversation.send_tick()
+    conversation.send(gateway.open_tick())
+    conversation.catch_up()
     while not conversation.listen_for(lambda: gateway.answered):
         if gateway.station_end is not None:
             return  # it has ended the run, and will not answer any more

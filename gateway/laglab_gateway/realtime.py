@@ -61,6 +61,9 @@ def serve_realtime(
     """Run a gateway to its last tick, one tick every `period` [s] of the clock `now`.
     Those who `watch` are looked after meanwhile.
 
+    Between a deadline and the tick's first byte nothing is done that can be done at another time:
+    the plant has been stepped, files wait. `progress` is told of each tick that begins.
+
     Raises:
         StationSilentError: the station never came, or fell silent for longer than allowed.
         EndpointError: the link itself broke.
@@ -75,13 +78,16 @@ def serve_realtime(
             late = now() - deadline
             if lateness.add(late):
                 gateway.announce(f"cannot keep up: tick {gateway.tick} is {late:.3f} s late")
-            conversation.send_tick()
+            conversation.send(gateway.open_tick())
             gateway.settle()
+            conversation.catch_up()
             conversation.ask_time()
-            answer = _listen_until(deadline + period, gateway, conversation)
-            recorder.timing(TimingRow(gateway.tick, late, answer))
-            progress(conversation.finish_tick())
+            progress(gateway.tick)
             conversation.check_silence()
+            answered = _listen_until(deadline + period, gateway, conversation)
+            answer = None if answered is None else answered - deadline - late
+            recorder.timing(TimingRow(gateway.tick, late, answer))
+            conversation.finish_tick()
     except KeyboardInterrupt:
         gateway.outcome = Outcome(EndReason.INTERRUPTED, gateway.tick)
     conversation.say_goodbye(gateway.outcome)
@@ -89,10 +95,10 @@ def serve_realtime(
 
 
 def _listen_until(deadline: float, gateway: Gateway, conversation: Conversation) -> float | None:
-    """Take what arrives before the deadline; the seconds until this tick's answer, if it came."""
-    began, answer = conversation.now(), None
+    """Take what arrives before the deadline; when this tick's answer came, if it did."""
+    answered = None
     while (left := deadline - conversation.now()) > 0:
         conversation.listen(min(left, LONGEST_WAIT))
-        if answer is None and gateway.answered:
-            answer = conversation.now() - began
-    return answer
+        if answered is None and gateway.answered:
+            answered = conversation.now()
+    return answered

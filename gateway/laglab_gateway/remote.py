@@ -134,5 +134,6 @@ def _relay_ticks(
         if relay.outcome is not None:
             return
         conversation.check_silence()
-        conversation.send_tick()
+        conversation.send(relay.open_tick())
+        conversation.catch_up()
         conversation.ask_time()

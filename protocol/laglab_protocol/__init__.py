@@ -1,6 +1,6 @@
 """The link: the dialect's messages, their frames, and the endpoints they travel between."""
 
-from laglab_protocol.endpoints import Endpoint, open_endpoint
+from laglab_protocol.endpoints import Endpoint, SerialPair, open_endpoint
 from laglab_protocol.errors import (
     BadUrlError,
     DialectError,
@@ -98,6 +98,7 @@ __all__ = [
     "Receiver",
     "Refusal",
     "Sender",
+    "SerialPair",
     "Statustext",
     "SysStatus",
     "SystemTime",

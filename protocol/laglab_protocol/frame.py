@@ -102,7 +102,8 @@ def decode(buffer: bytes, start: int, signed_too: bool = True) -> Frame | Refusa
     stop = end + (CRC_SIZE + SIGNATURE_SIZE if flags else CRC_SIZE)
     if size < stop:
         return Refusal.INCOMPLETE
-    if _crc(buffer[start + 1 : end] + layout.crc_extra) != buffer[end] | buffer[end + 1] << 8:
+    crc = _crc(layout.crc_extra, _crc(buffer[start + 1 : end]))
+    if crc != buffer[end] | buffer[end + 1] << 8:
         return Refusal.BAD_CRC
     if length >= layout.size:
         fields = layout.unpack(buffer, body)

@@ -12,6 +12,7 @@ class Sender:
         self._system = system
         self._component = component
         self._signer = signer
+        self._flags = SIGNED if signer else 0
         self._sequence = 0
 
     def frame(self, message: Message) -> bytes:
@@ -20,7 +21,6 @@ class Sender:
         Raises DialectError for a class that is no message, struct.error for a value out of range;
         neither uses up a sequence number.
         """
-        flags = SIGNED if self._signer else 0
-        made = encode(message, self._system, self._component, self._sequence, flags)
+        made = encode(message, self._system, self._component, self._sequence, self._flags)
         self._sequence = (self._sequence + 1) & 0xFF
         return self._signer.sign(made) if self._signer else made

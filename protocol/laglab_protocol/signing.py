@@ -118,7 +118,7 @@ class Verifier:
             return None if allowed else Refusal.UNSIGNED
         digest = self._keyed.copy()
         digest.update(raw[:-6])
-        link, low, high, signature = _unpack_signature(raw, len(raw) - SIGNATURE_SIZE)
+        link, low, high, signature = _unpack_signature(raw, -SIGNATURE_SIZE)
         if not compare_digest(digest.digest()[:6], signature):
             return Refusal.BAD_SIGNATURE
         stream, timestamp = (link, system, component), low | high << 32

@@ -11,8 +11,10 @@ from laglab.commands import (
     errata,
     fmu,
     protocol,
+    replay,
     run,
     scenarios,
+    serial,
     sides,
 )
 from laglab.errors import LaglabError, RunError, ScenarioError
@@ -29,12 +31,14 @@ app = typer.Typer(
     add_completion=False,
 )
 app.command("run")(run.run)
+app.command("replay")(replay.replay)
 app.command("scenarios")(scenarios.scenarios)
 app.command("compare")(compare.compare)
 app.command("consistency")(consistency.consistency)
 app.command("errata")(errata.errata)
 app.command("gateway")(sides.gateway)
 app.command("controller")(sides.controller)
+app.command("serial")(serial.serial)
 app.add_typer(bench.app, name="bench")
 app.add_typer(fmu.app, name="fmu")
 app.add_typer(protocol.app, name="protocol")

@@ -15,10 +15,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.report import reestimate
 from laglab.scenario import Scenario
+from laglab.sides import robot_model
 from laglab.summary import deviation
 from laglab.trials import run_trial
+from laglab_controller import ESTIMATORS, Replay, constant_delay, replay
+from laglab_gateway import Trace
 
 Array = NDArray[np.float64]
 DEGREES = 3
@@ -119,11 +121,25 @@ def sample(scenario: Scenario, estimators: Sequence[str]) -> dict[str, Sample]:
     trace = run_trial(scenario)
     answer = {}
     for name in estimators:
-        replayed = reestimate(scenario, name, trace)
+        replayed = _reestimated(scenario, name, trace)
         error, P = deviation(trace, replayed.estimates), replayed.covariances
         variances = np.diagonal(P, axis1=1, axis2=2)
         answer[name] = Sample(error, variances, _nees(error, P), replayed.nis)
     return answer
+
+
+def _reestimated(scenario: Scenario, name: str, trace: Trace) -> Replay:
+    """What the named estimator makes of a record."""
+    estimator = ESTIMATORS[name].make(robot_model(scenario))
+    inputs = np.stack([trace["v"], trace["omega"]], axis=1)[:-1]
+    measurements = np.stack([trace[f"{axis}_meas"] for axis in ("x", "y", "theta")], axis=1)
+    return replay(
+        estimator,
+        scenario.first_estimate(),
+        scenario.initial_covariance * np.eye(3),
+        inputs,
+        constant_delay(measurements, scenario.measurement_delay),
+    )
 
 
 def _nees(error: Array, P: Array) -> Array:

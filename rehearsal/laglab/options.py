@@ -19,7 +19,10 @@ def _option(*names: str, help: str, metavar: str | None = None) -> Any:  # noqa:
 
 POSE = "X,Y,THETA"
 OVERRIDES: dict[str, Any] = {
-    "estimator": Annotated[str | None, _option("--estimator", help="The filter in the loop.")],
+    "estimator": Annotated[
+        list[str] | None,
+        _option("--estimator", help="The filter in the loop; further ones shadow it."),
+    ],
     "command_delay": Annotated[int | None, _option("-n", help="Command delay [ticks].")],
     "measurement_delay": Annotated[int | None, _option("-m", help="Measurement delay [ticks].")],
     "start": Annotated[str | None, _option("--start", help="Start pose.", metavar=POSE)],
@@ -59,6 +62,8 @@ def on_scenario(command: Callable[..., None]) -> Callable[..., None]:
     def wrapper(scenario: str, **options: Any) -> None:
         overrides = {field: options.pop(field) for field in OVERRIDES}
         given = {field: value for field, value in overrides.items() if value is not None}
+        if names := given.pop("estimator", None):
+            given |= {"estimator": names[0]} | ({"compare": names[1:]} if names[1:] else {})
         command(load(scenario, given), **options)
 
     parameters = [

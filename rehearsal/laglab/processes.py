@@ -12,7 +12,7 @@ from time import monotonic
 from typing import Any
 
 from laglab.scenario import Scenario
-from laglab.sides import Setup, open_robot, open_station
+from laglab.sides import Setup, open_robot, open_station, station_statistics
 from laglab_controller import StationError, run_station
 from laglab_fmu import FmuError
 from laglab_gateway import FileRecorder, GatewayError, Outcome, Patience
@@ -49,13 +49,20 @@ class Finished:
 
 
 @dataclass(frozen=True)
+class Answered:
+    """The station's run is over, and what it says of it."""
+
+    statistics: dict[str, Any]
+
+
+@dataclass(frozen=True)
 class Failed:
     """A side gave up, and why."""
 
     reason: str
 
 
-Report = Listening | Progress | Finished | Failed
+Report = Listening | Progress | Finished | Answered | Failed
 
 
 class LoopClock:
@@ -103,6 +110,7 @@ def station_process(scenario: Scenario, url: str, setup: Setup, reports: Connect
     try:
         with open_endpoint(url) as endpoint, open_station(scenario, setup.key) as station:
             run_station(station, endpoint, scenario.silence_timeout)
+        reports.send(Answered(station_statistics(station)))
     except SIDE_ERRORS as error:
         reports.send(Failed(str(error)))
 

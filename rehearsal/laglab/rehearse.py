@@ -11,6 +11,7 @@ from typing import Any, Literal
 from laglab.inline import InlineEndpoint
 from laglab.processes import (
     SIDE_ERRORS,
+    Answered,
     Failed,
     Finished,
     Listening,
@@ -23,7 +24,7 @@ from laglab.processes import (
     station_process,
 )
 from laglab.scenario import Scenario
-from laglab.sides import Setup, open_robot, open_station
+from laglab.sides import Setup, open_robot, open_station, station_statistics
 from laglab_gateway import FileRecorder, Outcome, Patience
 
 Transport = Literal["inline", "udp", "serial"]
@@ -77,7 +78,7 @@ def _inline(
             outcome, statistics = serve(endpoint, recorder, Patience(), clock)
     except SIDE_ERRORS as error:
         return Ending(None, str(error), clock.seconds, {})
-    return Ending(outcome, None, clock.seconds, statistics)
+    return Ending(outcome, None, clock.seconds, statistics | station_statistics(station))
 
 
 @contextmanager
@@ -108,7 +109,7 @@ def _two_processes(
             case Listening(address):
                 station_url = far_end(address)
             case report:
-                return _ending(report, [], 0.0)
+                return _ending(report, [], 0.0, {})
         with started("controller", station_process, scenario, station_url, setup) as station:
             try:
                 return _follow(gateway, station, notice, progress)
@@ -123,26 +124,41 @@ def _follow(gateway: Side, station: Side, notice: float, progress: Callable[[int
     A gateway whose station is gone gets `notice` seconds to find and say so, and no more.
     """
     problems: list[str] = []
+    told: dict[str, Any] = {}
     loop_seconds = 0.0
     watched = [gateway.reports, station.reports]
     while ready := wait(watched, timeout=notice if problems else None):
         if station.reports in ready:
             watched.remove(station.reports)
-            if isinstance(report := station.next_report(), Failed):
-                problems.append(report.reason)
+            match station.next_report():
+                case Failed(reason):
+                    problems.append(reason)
+                case Answered(told):
+                    pass
         if gateway.reports in ready:
             match gateway.next_report():
                 case Progress(tick, loop_seconds):
                     progress(tick)
                 case report:
-                    return _ending(report, problems, loop_seconds)
+                    told = told or _last_words(station)
+                    return _ending(report, problems, loop_seconds, told)
     return Ending(None, "; ".join(problems), loop_seconds, {})
 
 
-def _ending(report: Report, problems: list[str], loop_seconds: float) -> Ending:
+def _last_words(station: Side) -> dict[str, Any]:
+    """The station's statistics; nothing when it ends without."""
+    if not station.reports.poll(NOTICE_SECONDS):
+        return {}
+    report = station.next_report()
+    return report.statistics if isinstance(report, Answered) else {}
+
+
+def _ending(
+    report: Report, problems: list[str], loop_seconds: float, told: dict[str, Any]
+) -> Ending:
     match report:
         case Finished(outcome, seconds, statistics):
-            return Ending(outcome, None, seconds, statistics)
+            return Ending(outcome, None, seconds, statistics | told)
         case Failed(reason):
             return Ending(None, "; ".join([reason, *problems]), loop_seconds, {})
         case _:

@@ -9,11 +9,11 @@ from rich.table import Table
 
 from laglab.figure import FIGURE_FILE, draw_deviations, draw_run, save
 from laglab.rehearse import Ending, Transport
+from laglab.replaying import replay_session
 from laglab.scenario import Scenario
-from laglab.sides import robot_model
 from laglab.summary import deviation, loop_estimates, rms_error, summarise, write_summary
-from laglab_controller import ESTIMATORS, Replay, constant_delay, replay
-from laglab_gateway import Trace
+from laglab_controller import read_session
+from laglab_gateway import TLOG_FILE, Trace
 
 
 def write_results(
@@ -22,7 +22,7 @@ def write_results(
     """Write ``summary.json`` and ``figure.png``; returns the summary."""
     summary = summarise(scenario, transport, ending, trace)
     if scenario.compare:
-        deviations = compare(scenario, trace)
+        deviations = compare(scenario, trace, directory / TLOG_FILE)
         summary["compare"] = {
             name: rms_error(values, scenario.measurement_delay)
             for name, values in deviations.items()
@@ -35,26 +35,16 @@ def write_results(
     return summary
 
 
-def compare(scenario: Scenario, trace: Trace) -> dict[str, NDArray[np.float64]]:
-    """Deviations of the estimator in the loop, and of each in ``compare`` on the same record."""
-    estimates = {scenario.estimator: loop_estimates(trace)} | {
-        name: reestimate(scenario, name, trace).estimates for name in scenario.compare
-    }
+def compare(scenario: Scenario, trace: Trace, tlog: Path) -> dict[str, NDArray[np.float64]]:
+    """Deviations of the estimator in the loop, and of each in ``compare``, which shadows it on the
+    session that was recorded."""
+    session = list(read_session(tlog))
+    estimates = {scenario.estimator: loop_estimates(trace)}
+    for name in scenario.compare:
+        estimates[name] = np.full_like(estimates[scenario.estimator], np.nan)
+        replayed = replay_session(scenario, name, session)
+        estimates[name][np.searchsorted(trace["tick"], replayed.ticks)] = replayed.estimates
     return {name: deviation(trace, values) for name, values in estimates.items()}
-
-
-def reestimate(scenario: Scenario, name: str, trace: Trace) -> Replay:
-    """What the named estimator makes of a record."""
-    estimator = ESTIMATORS[name].make(robot_model(scenario))
-    inputs = np.stack([trace["v"], trace["omega"]], axis=1)[:-1]
-    measurements = np.stack([trace[f"{axis}_meas"] for axis in ("x", "y", "theta")], axis=1)
-    return replay(
-        estimator,
-        scenario.first_estimate(),
-        scenario.initial_covariance * np.eye(3),
-        inputs,
-        constant_delay(measurements, scenario.measurement_delay),
-    )
 
 
 def results_table(summary: dict[str, Any]) -> Table:
@@ -74,6 +64,7 @@ def results_table(summary: dict[str, Any]) -> Table:
         **{f"RMS error of {name}{seen}": _errors(errors) for name, errors in estimated.items()},
         **_link_rows(summary.get("link", {})),
         **_timing_row(summary.get("timing")),
+        **_station_rows(summary.get("station", {})),
         "speed": f"{summary['ticks']} ticks in {summary['wall_time_s']:.2f} s"
         + (f", {factor:.1f} × real time" if factor else ""),
     }
@@ -123,15 +114,26 @@ def _timing_row(timing: dict[str, Any] | None) -> dict[str, str]:
     }
 
 
+def _station_rows(station: dict[str, Any]) -> dict[str, str]:
+    """What the station found out by itself: the delays, and its own speed."""
+    if not station:
+        return {}
+    rows = {"delays as the station saw them": f"n {station['n_seen']}, m {station['m_seen']} ticks"}
+    if "tick_p99_s" in station:
+        p50, p99 = (1e6 * station[f"tick_{name}_s"] for name in ("p50", "p99"))
+        rows["the station's work on a tick"] = f"p50 {p50:.0f} µs, p99 {p99:.0f} µs"
+    return rows
+
+
 def warnings(summary: dict[str, Any]) -> list[str]:
     """What the reader must not overlook."""
-    missed = summary.get("timing", {}).get("missed_deadlines", 0)
-    if not missed:
-        return []
-    return [
-        f"{missed} of {summary['ticks']} ticks began more than a tick late: this machine cannot "
-        "keep up; take a smaller --speed"
-    ]
+    said = list(summary.get("station", {}).get("warnings", []))
+    if missed := summary.get("timing", {}).get("missed_deadlines", 0):
+        said.append(
+            f"{missed} of {summary['ticks']} ticks began more than a tick late: this machine "
+            "cannot keep up; take a smaller --speed"
+        )
+    return said
 
 
 def _errors(errors: dict[str, float] | None) -> str:

@@ -22,6 +22,8 @@ from laglab_gateway import (
     GatewayConfig,
     Link,
     Outcome,
+    Parameter,
+    Parameters,
     Patience,
     RandomFates,
     RecordedFates,
@@ -57,6 +59,8 @@ class Setup:
     """The address of the real robot; None: the FMU."""
     key: Path | None = None
     """The file of the key that signs every frame between gateway and station."""
+    armed: bool = True
+    """Whether the robot may move before a ground station says so."""
     unsigned: bool = False
     """Whether strangers may reach the real robot's own link, which is never signed."""
 
@@ -80,6 +84,24 @@ def robot_parameters(scenario: Scenario) -> RobotParameters:
     )
 
 
+def shown_parameters(scenario: Scenario) -> Parameters:
+    """What a ground station reads: the gateway's own, the law's gains, the noise [SI units]."""
+    noise = scenario.measurement_variance if scenario.noise else (0.0, 0.0, 0.0)
+    others = {
+        "LAW_GAMMA": scenario.gamma,
+        "LAW_LAMBDA": scenario.lambda_,
+        "LAW_H": scenario.h,
+        "NOISE_WHEEL": scenario.wheel_noise_variance if scenario.noise else 0.0,
+        **dict(zip(("NOISE_X", "NOISE_Y", "NOISE_THETA"), noise, strict=True)),
+    }
+    return standard_parameters(
+        scenario.command_delay,
+        scenario.measurement_delay,
+        scenario.safety,
+        [Parameter(name, value) for name, value in others.items()],
+    )
+
+
 def gateway_config(scenario: Scenario) -> GatewayConfig:
     """What the link and the robot's side do."""
     return GatewayConfig(
@@ -91,16 +113,18 @@ def gateway_config(scenario: Scenario) -> GatewayConfig:
     )
 
 
-def robot_services(scenario: Scenario, free_running: bool, placeable: bool = True) -> Services:
+def robot_services(
+    scenario: Scenario, free_running: bool, placeable: bool = True, armed: bool = True
+) -> Services:
     """What ground stations find; where time is simulated, no clocks are compared."""
-    n, m = scenario.command_delay, scenario.measurement_delay
     timesync = Timesyncing(time.monotonic_ns) if free_running else None
-    parameters = standard_parameters(n, m, scenario.safety)
-    return Services(parameters, timesync=timesync, placeable=placeable)
+    return Services(shown_parameters(scenario), armed, timesync, placeable=placeable)
 
 
 @contextmanager
-def open_gateway(scenario: Scenario, key: Path | None = None) -> Iterator[Gateway]:
+def open_gateway(
+    scenario: Scenario, key: Path | None = None, armed: bool = True
+) -> Iterator[Gateway]:
     """The robot's side, its FMU loaded until the context ends; its frames signed with a key."""
     parameters = robot_parameters(scenario)
     with (
@@ -108,7 +132,8 @@ def open_gateway(scenario: Scenario, key: Path | None = None) -> Iterator[Gatewa
         Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, key) as codec,
     ):
         plant = FmuPlant(robot, parameters)
-        services = robot_services(scenario, free_running=scenario.pace == "realtime")
+        free_running = scenario.pace == "realtime"
+        services = robot_services(scenario, free_running, armed=armed)
         yield Gateway(plant, gateway_config(scenario), link_fates(scenario), services, codec)
 
 
@@ -176,6 +201,7 @@ def serve_real(
     scenario: Scenario,
     robot: Endpoint,
     codec: Codec,
+    armed: bool,
     endpoint: Endpoint,
     recorder: Recorder,
     patience: Patience,
@@ -183,7 +209,7 @@ def serve_real(
     watchers: Sequence[Endpoint] = (),
 ) -> tuple[Outcome, dict[str, Any]]:
     """Be the link in front of a real robot, at its own pace; as `serve`."""
-    services = robot_services(scenario, free_running=True, placeable=False)
+    services = robot_services(scenario, free_running=True, placeable=False, armed=armed)
     relay = Relay(gateway_config(scenario), services, link_fates(scenario), codec)
     watch = _watch(services, watchers)
     outcome = serve_remote(relay, robot, endpoint, recorder, patience, progress, watch)
@@ -198,7 +224,7 @@ Serve = Callable[..., tuple[Outcome, dict[str, Any]]]
 def open_robot(scenario: Scenario, setup: Setup) -> Iterator[Serve]:
     """The robot's side: the FMU, or the real robot."""
     if setup.plant is None:
-        with open_gateway(scenario, setup.key) as gateway:
+        with open_gateway(scenario, setup.key, setup.armed) as gateway:
             yield partial(serve, scenario, gateway)
     else:
         with (
@@ -206,7 +232,7 @@ def open_robot(scenario: Scenario, setup: Setup) -> Iterator[Serve]:
             Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, setup.key) as codec,
         ):
             refuse_open_door(robot, None, setup.unsigned)
-            yield partial(serve_real, scenario, robot, codec)
+            yield partial(serve_real, scenario, robot, codec, setup.armed)
 
 
 def robot_model(scenario: Scenario) -> RobotModel:
@@ -239,6 +265,13 @@ def station_config(scenario: Scenario) -> StationConfig:
         initial_covariance=scenario.initial_covariance * np.eye(3),
         command_delay=scenario.command_delay,
     )
+
+
+def station_statistics(station: Station) -> dict[str, Any]:
+    """The station's own report, for the summary."""
+    n, m, times, warnings = station.report()
+    timed = {f"tick_{name}_s": value for name, value in times._asdict().items()} if times else {}
+    return {"station": {"n_seen": n, "m_seen": m, **timed, "warnings": list(warnings)}}
 
 
 @contextmanager

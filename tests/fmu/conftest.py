@@ -114,7 +114,7 @@ def extracted(fmus: dict[str, Path], tmp_path_factory: pytest.TempPathFactory) -
 
 @pytest.fixture(autouse=True)
 def use_fresh_fmus(fmus: dict[str, Path], monkeypatch: pytest.MonkeyPatch) -> None:
-    """Robots open the FMUs of this session, not what an earlier installation left."""
+    """Robots open the FMUs of this test run, not what an earlier installation left."""
     monkeypatch.setattr(slave_module, "built", lambda name: fmus[Path(name).stem])
 
 

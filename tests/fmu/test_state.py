@@ -76,6 +76,23 @@ def test_a_state_of_the_other_kind_is_refused(make_face: Callable[..., Any], nam
     stepped.free(state)
 
 
+@pytest.mark.parametrize("name", ["Robot2", "Robot3"])
+def test_time_comes_back_in_model_exchange(make_face: Callable[..., Any], name: str) -> None:
+    face, other = make_face(name, "ModelExchange"), make_face(name, "ModelExchange")
+    face.start(time=5.0, seed=8)
+    other.start(time=1.0)
+    state = face.save()
+    data = face.serialize(state)
+    face.free(state)
+    received = other.deserialize(data)
+    other.restore(received)
+    other.free(received)
+    fmu = other.fmu
+    *_, next_time = fmu.newDiscreteStates() if name == "Robot2" else fmu.updateDiscreteStates()
+    assert next_time == pytest.approx(5.01)
+    assert other.get("x_meas", "v") == face.get("x_meas", "v")
+
+
 def checksum(data: bytes, token: str) -> int:
     """FNV-1a of the token with its final zero, then of all but the checksum."""
     total = 0xCBF29CE484222325
@@ -126,6 +143,10 @@ def test_damaged_states_are_refused_or_harmless(
         (HEAD + 2 * 8, struct.pack("<d", 0.0), "sample_time"),
         (HEAD + 1 * 8, struct.pack("<d", float("nan")), "track"),
         (HEAD + 3 * 8, struct.pack("<d", -1.0), "wheel_noise_variance"),
+        (HEAD + 30 * 8, struct.pack("<d", -1.0), "elapsed"),
+        (HEAD + 30 * 8, struct.pack("<d", 1e300), "elapsed"),
+        (HEAD + 31 * 8, struct.pack("<q", -1), "sample"),
+        (HEAD + 31 * 8, struct.pack("<q", 2**62), "sample"),
         (16, struct.pack("<Q", 7), "kind"),
         (24, struct.pack("<Q", 3), "mode"),
     ],

@@ -90,7 +90,7 @@ class Peer(threading.Thread):
 
     def send(self, *messages: Message) -> None:
         if self.slow:
-            time.sleep(0.3)
+            time.sleep(0.3)  # more than the kit allows
         raw = b"".join(self.framed(message) for message in messages)
         self.endpoint.send(raw + (b"?" if self.fault == "sends stray bytes" else b""))
         if self.fault == "signs not all":
@@ -213,6 +213,7 @@ class Robot(Peer):
     def __init__(self, endpoint: Endpoint, fault: str, key_file: Path | None) -> None:
         super().__init__(endpoint, fault, key_file)
         self.tick: int | None = None
+        self.slow_until = 0
         self.estimates = 0
         self.repeats = 0
 
@@ -250,12 +251,13 @@ class Robot(Peer):
             "takes earlier commands": (0, -1),
         }.get(self.fault, (0,))
         if command.v != command.v:
-            self.slow = self.fault == "is slow"
+            self.slow_until = self.tick + 9 if self.fault == "is slow" else 0
             self.deaf = 1 if self.fault == "stumbles over NaN" else 0
             return
         whole = self.estimates >= command.estimates or self.fault == "does not wait for estimates"
         if command.tick - self.tick in ticks and whole:
             self.estimates = 0
+            self.slow = self.tick < self.slow_until
             self.tick += 2 if self.fault == "leaves ticks out" and self.tick > 12 else 1
             self.say_tick(self.tick)
 

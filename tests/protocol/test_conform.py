@@ -10,7 +10,7 @@ from laglab_protocol.conform import Patience, Report, conform, controller, robot
 
 from .reference_peers import Controller, Robot
 
-QUICK = Patience(appear=3.0, react=0.6, refuse=0.07)
+QUICK = Patience(appear=3.0, react=1.0, refuse=0.1)
 
 BOTH = {
     "compares half of the CRC": "a corrupted frame is refused",

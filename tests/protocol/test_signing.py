@@ -264,6 +264,20 @@ def test_nothing_is_heard_twice_across_a_restart(key_file: Path, crash: bool) ->
     assert again.receiver.counters.refused[Refusal.REPLAYED] == 3
 
 
+def test_every_stream_is_kept_across_a_second_crash(tmp_path: Path) -> None:
+    """One stream that is far ahead does not keep another's place from being written."""
+    path, slow, fast = tmp_path / "timestamps", (0, 7, 1), (0, 8, 1)
+
+    def hears(*frames: bytes) -> list[bool]:
+        listening = Receiver(Verifier(KEY, StoredTimestamps(path), clock=lambda: NOW))
+        return [bool(listening.receive(raw) + listening.end_datagram()) for raw in frames]
+
+    assert hears(signed(NOW, stream=slow)) == [True]
+    late = signed(NOW + 2 * AHEAD, stream=slow)
+    assert hears(signed(NOW + 10**8, stream=fast), late) == [True, True]
+    assert hears(late) == [False]
+
+
 def test_our_own_timestamps_go_on_after_a_restart(tmp_path: Path) -> None:
     path = tmp_path / "timestamps"
     first = StoredTimestamps(path)

@@ -12,6 +12,8 @@ import pytest
 
 from laglab.command import main
 
+Start = Callable[..., "subprocess.Popen[str]"]
+
 
 @pytest.fixture
 def laglab(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
@@ -46,8 +48,8 @@ def rehearsed(tmp_path: Path) -> Callable[..., dict[str, Any]]:
 
 
 @pytest.fixture
-def start(tmp_path: Path) -> Iterator[Callable[..., "subprocess.Popen[str]"]]:
-    """Start `laglab ARGUMENTS` in the background; whatever still runs at the end is ended."""
+def start(tmp_path: Path) -> Iterator[Start]:
+    """Start ``laglab ARGUMENTS`` in the background; whatever still runs at the end is ended."""
     running: list[subprocess.Popen[str]] = []
 
     def call(*arguments: str) -> "subprocess.Popen[str]":
@@ -55,7 +57,7 @@ def start(tmp_path: Path) -> Iterator[Callable[..., "subprocess.Popen[str]"]]:
             [sys.executable, "-m", "laglab", *arguments],
             cwd=tmp_path,
             stderr=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
             text=True,
         )
         running.append(process)

@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from laglab.report import reestimate
+from laglab.replaying import replay_session
 from laglab.scenario import load
 from laglab.summary import loop_estimates
+from laglab_controller import read_session
 from laglab_gateway import read_trace
 
 Rehearsed = Callable[..., dict[str, Any]]
@@ -53,8 +54,9 @@ def test_fig8_popf_deviates_less_than_ekf_in_all_three(rehearsed: Rehearsed) -> 
 def test_fig8_replays_to_what_the_loop_estimated(rehearsed: Rehearsed, tmp_path: Path) -> None:
     rehearsed("fig8")
     trace = read_trace(tmp_path / "run" / "trace.csv")
-    replayed = reestimate(load("fig8"), "popf", trace).estimates
-    np.testing.assert_array_equal(replayed, loop_estimates(trace))
+    session = list(read_session(tmp_path / "run" / "robot.tlog"))
+    replayed = replay_session(load("fig8"), "popf", session)
+    np.testing.assert_array_equal(replayed.estimates, loop_estimates(trace))
 
 
 def test_lab_converges(rehearsed: Rehearsed) -> None:

@@ -3,11 +3,24 @@
 import stat
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+
+from laglab.scenario import Scenario
+from laglab.sides import shown_parameters
+from laglab_protocol import (
+    CommandLong,
+    Endpoint,
+    Heartbeat,
+    LocalPositionNed,
+    Receiver,
+    Sender,
+    open_endpoint,
+)
 
 Laglab = Callable[..., subprocess.CompletedProcess[str]]
 Start = Callable[..., "subprocess.Popen[str]"]
@@ -82,9 +95,10 @@ def test_lint_passes_our_dialect_and_names_the_faults_of_another(
 
 
 def test_generate_writes_python_that_speaks_our_dialect(laglab: Laglab, tmp_path: Path) -> None:
-    assert laglab("protocol", "generate", "--lang", "Python3", "ours.py").returncode == 0
-    program = "import ours; print(ours.MAVLink_laglab_tick_message.id)"
-    said = subprocess.check_output([sys.executable, "-c", program], cwd=tmp_path, text=True)
+    assert laglab("protocol", "generate", "--lang", "Python3", "ours").returncode == 0
+    program = "import laglab; print(laglab.MAVLink_laglab_tick_message.id)"
+    where = tmp_path / "ours"
+    said = subprocess.check_output([sys.executable, "-c", program], cwd=where, text=True)
     assert said.strip() == "52100"
 
 
@@ -105,3 +119,38 @@ def test_nobody_there_does_not_conform(laglab: Laglab) -> None:
     result = laglab("conform", "udpout://127.0.0.1:9", "--side", "robot")
     assert result.returncode == 1
     assert "does not conform" in result.stdout
+
+
+def test_a_ground_station_reads_the_gains_and_the_noise() -> None:
+    shown = shown_parameters(Scenario(noise=True))
+
+    assert (shown["DELAY_N"], shown["DELAY_M"]) == (10, 20)
+    assert (shown["LAW_GAMMA"], shown["LAW_LAMBDA"], shown["LAW_H"]) == (3.0, 6.0, 1.0)
+    assert (shown["NOISE_X"], shown["NOISE_THETA"], shown["NOISE_WHEEL"]) == (0.01, 0.018, 0.01)
+    assert shown_parameters(Scenario(noise=False))["NOISE_X"] == 0.0
+
+
+def test_a_disarmed_robot_moves_when_a_ground_station_arms_it(
+    start: Start, listening_port: ListeningPort
+) -> None:
+    options = ("--pace", "realtime", "--disarmed", "--watch", "udpin://127.0.0.1:0")
+    gateway = start("gateway", "fig4", *options, "--endpoint", "udpin://127.0.0.1:0")
+    port, watched = listening_port(gateway), listening_port(gateway)
+    start("controller", "fig4", "--endpoint", f"udpout://127.0.0.1:{port}")
+    sender, receiver = Sender(255, 190), Receiver()
+
+    def position(link: Endpoint) -> tuple[float, float]:
+        deadline = time.monotonic() + 20
+        while time.monotonic() < deadline:
+            link.send(sender.frame(Heartbeat(0, 6, 8, 0, 4, 3)))
+            for frame in receiver.receive(link.receive(0.2)) + receiver.end_datagram():
+                if isinstance(frame.message, LocalPositionNed):
+                    return frame.message.x, frame.message.y
+        raise AssertionError("the robot tells no position")
+
+    with open_endpoint(f"udpout://127.0.0.1:{watched}") as link:
+        assert {position(link) for _ in range(5)} == {(-3.0, -3.0)}
+        link.send(sender.frame(CommandLong(1.0, 0, 0, 0, 0, 0, 0, 400, 1, 1, 0)))
+        deadline = time.monotonic() + 20
+        while position(link) == (-3.0, -3.0):
+            assert time.monotonic() < deadline, "armed, but it does not move"

@@ -9,8 +9,7 @@ from laglab.commands.run import KeyOption
 from laglab_protocol import make_key
 from laglab_protocol.conform import Side
 from laglab_protocol.conform import conform as test_conformance
-from laglab_protocol.dialect import dialect_path
-from laglab_protocol.dialect import generate as generate_code
+from laglab_protocol.dialect import LANGUAGES, dialect_path, generate_into
 from laglab_protocol.lint import lint as find_faults
 
 app = typer.Typer(help="The dialect, for those who write the other side.", no_args_is_help=True)
@@ -37,15 +36,12 @@ def lint(
 
 @app.command()
 def generate(
-    output: Annotated[
-        Path, typer.Argument(metavar="OUTPUT", help="A folder for C, a file for Python3 and WLua.")
-    ],
-    lang: Annotated[str, typer.Option(metavar="NAME", help="C, Python3, WLua, ...")] = "C",
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Where the code goes.")],
+    lang: Annotated[str, typer.Option(metavar="NAME", help=f"{', '.join(LANGUAGES)}.")] = "C",
     dialect: DialectOption = None,
 ) -> None:
     """Generate code for firmware (C), programs (Python3), or a dissector for Wireshark (WLua)."""
-    generate_code(dialect or dialect_path(), lang, output)
-    print(output)
+    print(generate_into(lang, directory, dialect))
 
 
 @app.command()

@@ -41,11 +41,14 @@ def gateway(
     plant: PlantOption = None,
     key: KeyOption = None,
     unsigned: UnsignedOption = False,
+    disarmed: Annotated[
+        bool, typer.Option("--disarmed", help="Stand still until a ground station arms the robot.")
+    ] = False,
 ) -> None:
     """Be the robot's side of SCENARIO: wait for a controller, run to the end."""
     console = Console(stderr=True)
     with (
-        open_robot(scenario, Setup(plant, key, unsigned)) as serve,
+        open_robot(scenario, Setup(plant, key, not disarmed, unsigned)) as serve,
         closing(FileRecorder(out) if out else NoRecorder()) as recorder,
         open_endpoint(endpoint) as link,
         _watchers(watch or [], unsigned) as watchers,

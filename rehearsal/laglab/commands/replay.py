@@ -1,0 +1,55 @@
+"""``laglab replay``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from laglab.errors import ScenarioError
+from laglab.figure import save
+from laglab.rehearse import SCENARIO_FILE
+from laglab.replaying import draw_replays, replay_session, replays_table, write_replays
+from laglab.scenario import load
+from laglab_controller import read_session
+from laglab_gateway import TRACE_FILE, read_trace
+
+TlogArgument = Annotated[
+    Path,
+    typer.Argument(
+        metavar="TLOG", help="A session's telemetry log, robot.tlog.", exists=True, dir_okay=False
+    ),
+]
+
+
+def replay(
+    tlog: TlogArgument,
+    estimators: Annotated[
+        list[str], typer.Option("--estimator", metavar="NAME", help="A filter; several times.")
+    ],
+    scenario: Annotated[
+        str | None,
+        typer.Option(
+            metavar="SCENARIO",
+            help="The model and the prior; the scenario.toml beside the log otherwise.",
+        ),
+    ] = None,
+    p0: Annotated[float | None, typer.Option("--p0", help="P_0 = VALUE·I.")] = None,
+    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where results go.")] = Path(
+        "replay"
+    ),
+) -> None:
+    """Estimate again from the log of a session, of the simulated or of a real robot."""
+    overrides = {} if p0 is None else {"initial_covariance": p0}
+    told = load(scenario or str(tlog.parent / SCENARIO_FILE), overrides)
+    session = list(read_session(tlog))
+    if not session:
+        raise ScenarioError(f"{tlog}: no tick of a robot in it")
+    replays = {name: replay_session(told, name, session) for name in estimators}
+    trace_file = tlog.parent / TRACE_FILE
+    trace = read_trace(trace_file) if trace_file.exists() else None
+    out.mkdir(parents=True, exist_ok=True)
+    write_replays(replays, out)
+    save(draw_replays(told, session, replays, trace), out / "replay.png")
+    Console().print(replays_table(replays, trace), crop=False, no_wrap=True)
+    Console().print(f"results in {out}", highlight=False, soft_wrap=True)

@@ -1,0 +1,140 @@
+"""Measurements late, missing, repeated, out of order, too old: what each filter does with them."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from laglab_controller import (
+    DelayedEkf,
+    Ekf,
+    Measured,
+    Popf,
+    PopfExact,
+    Rewinding,
+    RigidMotions,
+    RobotModel,
+)
+
+ROBOT = RobotModel()
+TICKS = 50
+RANDOM = np.random.default_rng(11)
+INPUTS = RANDOM.normal(size=(TICKS, 2)) * 2
+MEASUREMENTS = RANDOM.normal(size=(TICKS + 1, 3)) * 0.2
+X_0, P_0 = np.zeros(3), np.diag([0.01, 0.02, 0.03])
+
+
+def made(memory):
+    return {
+        "ekf": Ekf(ROBOT),
+        "popf": Popf(ROBOT, memory=memory),
+        "popf-exact": PopfExact(ROBOT, memory=memory),
+        "delayed-ekf": DelayedEkf(ROBOT, RigidMotions(ROBOT), memory=memory),
+        "rewinding popf": Rewinding(Popf(ROBOT, memory=memory), memory=memory),
+    }
+
+
+def run(estimator, arrivals):
+    """`arrivals[k]` lists the sampling ticks of what arrives at tick k."""
+    state = estimator.start(X_0, P_0)
+    for k in range(TICKS + 1):
+        state = estimator.predict(state, INPUTS[k - 1]) if k else state
+        arrived = [Measured(s, MEASUREMENTS[s]) for s in arrivals.get(k, [])]
+        state = estimator.correct(state, arrived)
+    return state
+
+
+def literal_popf(arrivals):
+    """(27), (28) for any arrivals: each z_s its own correction, M* from s to k and through the
+    corrections already made at k."""
+    x, P, used = X_0, P_0, set()
+    priors, factors = [], []
+    for k in range(TICKS + 1):
+        if k:
+            A, W = ROBOT.A(x, INPUTS[k - 1]), ROBOT.W(x)
+            factors[-1] = A @ factors[-1]
+            x, P = ROBOT.f(x, INPUTS[k - 1]), A @ P @ A.T + W @ ROBOT.Q @ W.T
+        priors.append((x, P))
+        factors.append(np.eye(3))
+        for s in arrivals.get(k, []):
+            if s in used:
+                continue
+            used.add(s)
+            (x_s, P_s), M = priors[s], np.eye(3)
+            for factor in factors[s:]:
+                M = factor @ M
+            K = M @ P_s @ np.linalg.inv(P_s + ROBOT.R)
+            x = x + K @ ROBOT.innovation(MEASUREMENTS[s], x_s)
+            P = P - K @ P_s @ M.T
+            factors[-1] = (np.eye(3) - K) @ factors[-1]
+    return x, P
+
+
+def in_order(arrivals):
+    """An EKF with everything that arrived, each at its own tick."""
+    x, P = X_0, P_0
+    arrived = {s for batch in arrivals.values() for s in batch}
+    for k in range(TICKS + 1):
+        if k:
+            A, W = ROBOT.A(x, INPUTS[k - 1]), ROBOT.W(x)
+            x, P = ROBOT.f(x, INPUTS[k - 1]), A @ P @ A.T + W @ ROBOT.Q @ W.T
+        if k in arrived:
+            K = P @ np.linalg.inv(P + ROBOT.R)
+            x, P = x + K @ ROBOT.innovation(MEASUREMENTS[k], x), (np.eye(3) - K) @ P
+    return x, P
+
+
+@st.composite
+def links(draw):
+    """For each measurement the delays of its copies: none is a loss, two a repeat."""
+    arrivals = {}
+    for s in range(TICKS + 1):
+        for delay in draw(st.lists(st.integers(0, 15), max_size=2)):
+            arrivals.setdefault(s + delay, []).append(s)
+    return {k: draw(st.permutations(batch)) for k, batch in arrivals.items() if k <= TICKS}
+
+
+@settings(max_examples=40, deadline=None)
+@given(links())
+def test_popf_does_what_its_equations_say(arrivals):
+    x, P = literal_popf(arrivals)
+    state = run(Popf(ROBOT), arrivals)
+    scale = 1 + np.abs(P).max()
+    assert np.abs(state.x - x).max() < 1e-9 * scale
+    assert np.abs(state.P - P).max() < 1e-9 * scale
+
+
+@settings(max_examples=40, deadline=None)
+@given(links())
+def test_delayed_ekf_is_the_ekf_that_had_everything_in_order(arrivals):
+    x, P = in_order(arrivals)
+    state = run(DelayedEkf(ROBOT, RigidMotions(ROBOT)), arrivals)
+    assert np.abs(state.x - x).max() < 1e-10
+    assert np.abs(state.P - P).max() < 1e-10
+
+
+@pytest.mark.parametrize("name", list(made(8)))
+def test_what_is_older_than_the_memory_changes_nothing(name):
+    estimator = made(8)[name]
+    fresh = {k: [k] for k in range(30, TICKS + 1, 3)}
+    a, b = run(estimator, fresh), run(estimator, {**fresh, TICKS: [5, 0]})
+    np.testing.assert_array_equal(a.x, b.x)
+    np.testing.assert_array_equal(a.P, b.P)
+
+
+@pytest.mark.parametrize("name", list(made(8)))
+def test_a_long_silence_then_a_measurement(name):
+    """The memory is bounded: the past does not grow with the silence."""
+    estimator = made(8)[name]
+    state = run(estimator, {})
+    corrected = estimator.correct(state, [Measured(TICKS - 3, MEASUREMENTS[0])])
+    assert np.abs(corrected.x - state.x).max() > 1e-4
+    assert np.trace(corrected.P) < np.trace(state.P)
+
+
+@pytest.mark.parametrize("name", ["ekf", "popf-exact"])
+def test_these_take_no_measurement_older_than_one_already_used(name):
+    estimator = made(1024)[name]
+    once = run(estimator, {20: [15], 30: [25]})
+    again = run(estimator, {20: [15], 30: [25], 31: [18], 40: [10]})
+    np.testing.assert_array_equal(once.x, again.x)

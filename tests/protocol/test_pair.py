@@ -1,0 +1,152 @@
+"""Two real ptys with a line of 57,600 baud between them."""
+
+import os
+import random
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+from laglab_protocol import (
+    Endpoint,
+    FarEndGoneError,
+    PortBusyError,
+    SerialPair,
+    open_endpoint,
+)
+from laglab_protocol.endpoints.wire import TRANSMIT_BUFFER
+
+BAUD = 57600
+
+
+class Running:
+    """A pair that a thread carries bytes for."""
+
+    def __init__(self, folder: Path) -> None:
+        self.paths = (folder / "one", folder / "two")
+        self.pair = SerialPair(str(self.paths[0]), str(self.paths[1]), BAUD)
+        self._ended = False
+        self._thread = threading.Thread(target=self._carry)
+        self._thread.start()
+
+    def _carry(self) -> None:
+        while not self._ended:
+            self.pair.carry_once(0.05)
+
+    def open(self, which: int) -> Endpoint:
+        return open_endpoint(f"serial://{self.paths[which]}:{BAUD}")
+
+    def close(self) -> None:
+        self._ended = True
+        self._thread.join()
+        self.pair.close()
+
+
+@pytest.fixture
+def stack() -> Iterator[ExitStack]:
+    with ExitStack() as opened:
+        yield opened
+
+
+@pytest.fixture
+def running(tmp_path: Path, stack: ExitStack) -> Running:
+    made = Running(tmp_path)
+    stack.callback(made.close)
+    return made
+
+
+def read_all(endpoint: Endpoint, size: int) -> bytes:
+    data = b""
+    while len(data) < size:
+        piece = endpoint.receive(2.0)
+        assert piece, f"only {len(data)} of {size} bytes came"
+        data += piece
+    return data
+
+
+def test_both_ways_at_once_each_at_the_baud_rate(running: Running, stack: ExitStack) -> None:
+    ends = [stack.enter_context(running.open(which)) for which in (0, 1)]
+    sent = [random.Random(which).randbytes(3000) for which in (0, 1)]
+    started = time.monotonic()
+    for end, data in zip(ends, sent, strict=True):
+        end.send(data)
+    assert [read_all(ends[1], 3000), read_all(ends[0], 3000)] == sent
+    at_the_rate = 3000 * 10 / BAUD
+    assert 0.99 * at_the_rate < time.monotonic() - started < 1.1 * at_the_rate
+    running.close()
+    assert [way.carried for way in running.pair.directions] == [3000, 3000]
+
+
+def test_a_writer_faster_than_the_line_has_to_wait(running: Running, stack: ExitStack) -> None:
+    """Kernel and line take a bounded amount; the rest goes in only as the line drains."""
+    writer, reader = (stack.enter_context(running.open(which)) for which in (0, 1))
+    os.set_blocking(writer.fileno(), False)
+    taken, started = 0, time.monotonic()
+    while time.monotonic() - started < 0.3:
+        try:
+            taken += os.write(writer.fileno(), bytes(1000))
+        except BlockingIOError:
+            time.sleep(0.005)
+    assert len(read_all(reader, 1000)) >= 1000
+    kernel = 70_000
+    assert taken < kernel + TRANSMIT_BUFFER + 0.3 * BAUD / 10
+
+
+def test_a_port_that_nobody_reads_loses_bytes_and_holds_nobody_up(
+    tmp_path: Path, stack: ExitStack
+) -> None:
+    """At a rate that fills the kernel's buffer soon."""
+    pair = stack.enter_context(SerialPair(str(tmp_path / "one"), str(tmp_path / "two"), 4_000_000))
+    writer = stack.enter_context(open_endpoint(f"serial://{tmp_path / 'one'}:{BAUD}"))
+    way, sent, carried = pair.directions[0], 0, []
+    while len(carried) < 100:
+        writer.send(bytes(1000))
+        sent += 1000
+        while way.carried + way.overrun < sent:
+            pair.carry_once(0.01)
+        if way.overrun:
+            carried.append(way.carried)
+    assert carried[0] == carried[-1] < 100_000
+    assert way.wire.room == TRANSMIT_BUFFER
+
+
+def test_ports_are_opened_again(running: Running, stack: ExitStack) -> None:
+    other = stack.enter_context(running.open(1))
+    for _ in range(2):
+        with running.open(0) as port:
+            port.send(b"hello")
+            assert read_all(other, 5) == b"hello"
+
+
+def test_a_port_has_one_holder(running: Running, stack: ExitStack) -> None:
+    stack.enter_context(running.open(0))
+    with pytest.raises(PortBusyError, match="one"):
+        running.open(0)
+
+
+def test_pulling_the_cable_is_noticed_at_both_ports(tmp_path: Path, stack: ExitStack) -> None:
+    pair = SerialPair(str(tmp_path / "one"), str(tmp_path / "two"), BAUD)
+    ports = [
+        stack.enter_context(open_endpoint(f"serial://{tmp_path / name}:{BAUD}"))
+        for name in ("one", "two")
+    ]
+    pair.close()
+    for port in ports:
+        with pytest.raises(FarEndGoneError, match="gone"):
+            port.receive(1.0)
+    assert not list(tmp_path.iterdir())
+
+
+def test_two_ports_need_two_paths(tmp_path: Path) -> None:
+    with pytest.raises(PortBusyError, match="two paths"):
+        SerialPair(str(tmp_path / "one"), str(tmp_path / "one"), BAUD)
+
+
+def test_the_first_port_goes_when_the_second_cannot_be_made(tmp_path: Path) -> None:
+    (tmp_path / "two").write_text("precious")
+    with pytest.raises(PortBusyError, match="two"):
+        SerialPair(str(tmp_path / "one"), str(tmp_path / "two"), BAUD)
+    assert [path.name for path in tmp_path.iterdir()] == ["two"]

@@ -1,0 +1,32 @@
+"""The practical default comes to rest at the goal, wherever it starts and whatever the noise."""
+
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+
+import numpy as np
+import pytest
+
+from laglab.pose import robot_pose
+from laglab.scenario import load
+from laglab.summary import goal_errors
+from laglab.trials import completed, run_trial
+
+SEEDS = 100
+
+
+def ends_at_goal(seed):
+    """One noisy run of `lab` from a random pose within 5 m; its last tick."""
+    random = np.random.default_rng(seed)
+    distance, bearing = 5 * np.sqrt(random.uniform()), random.uniform(-np.pi, np.pi)
+    start = (distance * np.cos(bearing), distance * np.sin(bearing), random.uniform(-np.pi, np.pi))
+    scenario = load("lab", {"start": start, "seed": seed})
+    trace = run_trial(scenario)
+    rho, theta = goal_errors(robot_pose(trace)[-1:], scenario)
+    return completed(trace, scenario) and bool(rho[0] < 0.06 and abs(theta[0]) < 0.05)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(240)
+def test_99_of_100_random_starts_end_at_the_goal():
+    with ProcessPoolExecutor(2, get_context("spawn")) as pool:
+        assert sum(pool.map(ends_at_goal, range(SEEDS))) >= 0.99 * SEEDS

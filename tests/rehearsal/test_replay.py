@@ -1,0 +1,79 @@
+"""``laglab replay``: estimating again from the log of a session."""
+
+import csv
+
+import numpy as np
+import pytest
+
+from laglab.command import main
+from laglab_gateway import read_trace
+
+
+def replay(*arguments):
+    with pytest.raises(SystemExit) as ended:
+        main(["replay", *map(str, arguments)])
+    return ended.value.code
+
+
+def estimates(path):
+    with path.open() as file:
+        rows = list(csv.DictReader(file))
+    return np.array([[float(row[axis]) for axis in ("x", "y", "theta")] for row in rows])
+
+
+@pytest.fixture
+def run(rehearsed, tmp_path):
+    """A folder with what a short noisy run left."""
+    rehearsed("lab", "--duration", "2", "--estimator", "delayed-ekf")
+    return tmp_path / "run"
+
+
+@pytest.fixture
+def stations_estimates(run):
+    trace = read_trace(run / "trace.csv")
+    return np.stack([trace["x_est"], trace["y_est"], trace["theta_est"]], axis=1)
+
+
+def test_the_filter_of_the_run_says_the_same_again(run, stations_estimates, tmp_path):
+    out = tmp_path / "again"
+    assert replay(run / "robot.tlog", "--estimator", "delayed-ekf", "--out", out) == 0
+    np.testing.assert_array_equal(estimates(out / "delayed-ekf.csv"), stations_estimates)
+
+
+def test_several_filters_in_one_table_and_one_picture(run, tmp_path, capsys):
+    out = tmp_path / "several"
+    names = ["popf", "ekf", "raw"]
+    options = [part for name in names for part in ("--estimator", name)]
+    assert replay(run / "robot.tlog", *options, "--out", out) == 0
+    table = capsys.readouterr().out
+    assert "RMS deviation" in table
+    assert all(name in table for name in names)
+    assert (out / "replay.png").read_bytes().startswith(b"\x89PNG")
+    assert np.abs(estimates(out / "popf.csv") - estimates(out / "ekf.csv")).max() > 0.01
+
+
+def test_a_log_alone_is_enough_with_a_scenario_for_model_and_prior(run, tmp_path, capsys):
+    """As from a real robot: no trace, no true poses."""
+    log = tmp_path / "session.tlog"
+    log.write_bytes((run / "robot.tlog").read_bytes())
+    out = tmp_path / "alone"
+    code = replay(log, "--estimator", "popf", "--scenario", "lab", "--p0", "0.01", "--out", out)
+    assert code == 0
+    assert "RMS" not in capsys.readouterr().out
+    assert len(estimates(out / "popf.csv")) == 201
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["missing.tlog", "--estimator", "popf", "--scenario", "lab"], "missing.tlog"),
+        (["{log}", "--estimator", "best"], "--estimator: 'best' is not one of raw, ekf"),
+        (["{empty}", "--estimator", "popf", "--scenario", "lab"], "no tick of a robot in it"),
+    ],
+)
+def test_what_cannot_be_replayed_is_said_in_one_line(run, tmp_path, capsys, arguments, said):
+    empty = tmp_path / "empty.tlog"
+    empty.write_bytes(b"")
+    places = {"log": run / "robot.tlog", "empty": empty}
+    assert replay(*(argument.format(**places) for argument in arguments)) == 2
+    assert said in capsys.readouterr().err
