@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
+import laglab_fmu
 from laglab.scenario import Scenario
 from laglab_controller import Law, RobotModel, Station, StationConfig
-from laglab_fmu import Robot, RobotParameters
+from laglab_fmu import RobotParameters
 from laglab_gateway import (
     IDEAL,
     Direction,
@@ -128,7 +129,7 @@ def open_gateway(
     """The robot's side, its FMU loaded until the context ends; its frames signed with a key."""
     parameters = robot_parameters(scenario)
     with (
-        Robot.open(scenario.fmi, parameters) as robot,
+        laglab_fmu.Robot.open(scenario.fmi, parameters) as robot,
         Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, key) as codec,
     ):
         plant = FmuPlant(robot, parameters)

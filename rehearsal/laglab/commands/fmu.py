@@ -6,7 +6,8 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from laglab_fmu import PLATFORMS, build_fmus, fmu_path
+import laglab_fmu
+from laglab.extras import STEPPING, require
 
 app = typer.Typer(help="The robot as an FMU.", no_args_is_help=True)
 
@@ -20,9 +21,7 @@ def fmu() -> None:
 def build(
     out: Annotated[
         Path | None,
-        typer.Option(
-            "--out", metavar="DIR", help="Where they go; else where laglab's are."
-        ),
+        typer.Option("--out", metavar="DIR", help="Where they go; else where laglab's are."),
     ] = None,
     all_platforms: Annotated[
         bool,
@@ -33,7 +32,9 @@ def build(
     ] = False,
 ) -> None:
     """Build Robot2.fmu, Robot3.fmu and Fleet3.fmu, for this machine or for all."""
+    require(STEPPING)
+    folder = out or laglab_fmu.fmu_path(3).parent
     with Console(stderr=True).status("compiling"):
-        built = build_fmus(out or fmu_path(3).parent, PLATFORMS if all_platforms else ())
+        built = laglab_fmu.build_fmus(folder, laglab_fmu.PLATFORMS if all_platforms else ())
     for path in built:
         print(path)
