@@ -33,7 +33,7 @@ def build(
 ) -> None:
     """Build Robot2.fmu, Robot3.fmu and Fleet3.fmu, for this machine or for all."""
     require(STEPPING)
-    folder = out or laglab_fmu.fmu_path(3).parent
+    folder = out or Path(laglab_fmu.__file__).parent
     with Console(stderr=True).status("compiling"):
         built = laglab_fmu.build_fmus(folder, laglab_fmu.PLATFORMS if all_platforms else ())
     for path in built:
