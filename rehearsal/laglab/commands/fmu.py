@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from laglab_fmu import PLATFORMS, build_fmus
+from laglab_fmu import PLATFORMS, build_fmus, fmu_path
 
 app = typer.Typer(help="The robot as an FMU.", no_args_is_help=True)
 
@@ -18,7 +18,12 @@ def fmu() -> None:
 
 @app.command()
 def build(
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the FMUs go.")] = Path(),
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", metavar="DIR", help="Where they go; else where laglab's are."
+        ),
+    ] = None,
     all_platforms: Annotated[
         bool,
         typer.Option(
@@ -29,6 +34,6 @@ def build(
 ) -> None:
     """Build Robot2.fmu, Robot3.fmu and Fleet3.fmu, for this machine or for all."""
     with Console(stderr=True).status("compiling"):
-        built = build_fmus(out, PLATFORMS if all_platforms else ())
+        built = build_fmus(out or fmu_path(3).parent, PLATFORMS if all_platforms else ())
     for path in built:
         print(path)
