@@ -13,7 +13,6 @@ import numpy as np
 import laglab_fmu
 from laglab.scenario import Scenario
 from laglab_controller import Law, RobotModel, Station, StationConfig
-from laglab_fmu import RobotParameters
 from laglab_gateway import (
     IDEAL,
     Direction,
@@ -66,9 +65,9 @@ class Setup:
     """Whether strangers may reach the real robot's own link, which is never signed."""
 
 
-def robot_parameters(scenario: Scenario) -> RobotParameters:
+def robot_parameters(scenario: Scenario) -> laglab_fmu.RobotParameters:
     """The robot that the FMU simulates."""
-    return RobotParameters(
+    return laglab_fmu.RobotParameters(
         wheel_radius=scenario.wheel_radius,
         track=scenario.track,
         sample_time=scenario.sample_time,

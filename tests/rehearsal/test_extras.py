@@ -62,6 +62,13 @@ def port_of(gateway: "subprocess.Popen[str]") -> str:
     return found[1]
 
 
+def test_no_command_loads_what_it_does_not_need() -> None:
+    asked = "print([name for name in ('fmpy', 'matplotlib') if name in sys.modules])"
+    script = [sys.executable, "-c", f"import sys, laglab.command; {asked}"]
+    loaded = subprocess.run(script, capture_output=True, text=True, check=True)
+    assert loaded.stdout == "[]\n"
+
+
 @pytest.mark.slow
 @pytest.mark.timeout(300)
 def test_each_side_runs_where_only_what_it_needs_is_installed(tmp_path: Path) -> None:
