@@ -1,11 +1,13 @@
 """The robot as a Functional Mock-up Unit: its build, and the stepper that drives it.
 
 The plant is equations (1) and (3) of the paper with wheel and sensor noise; `Robot` steps it by
-one sample, `Fleet` many of them at once.
+one sample, `Fleet` many of them at once. What needs FMPy is loaded when it is first used: who only
+talks to a robot does without.
 """
 
-from laglab_fmu.build import build_fmus
-from laglab_fmu.compiler import PLATFORMS
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from laglab_fmu.errors import (
     BuildError,
     CallError,
@@ -13,10 +15,14 @@ from laglab_fmu.errors import (
     FmuError,
     FmuNotBuiltError,
 )
-from laglab_fmu.fleet import Fleet
 from laglab_fmu.parameters import Reading, RobotParameters
-from laglab_fmu.robot import Robot
-from laglab_fmu.slave import fleet_path, fmu_path
+
+if TYPE_CHECKING:
+    from laglab_fmu.build import build_fmus
+    from laglab_fmu.compiler import PLATFORMS
+    from laglab_fmu.fleet import Fleet
+    from laglab_fmu.robot import Robot
+    from laglab_fmu.slave import fleet_path, fmu_path
 
 __all__ = [
     "PLATFORMS",
@@ -33,3 +39,18 @@ __all__ = [
     "fleet_path",
     "fmu_path",
 ]
+
+_NEED_FMPY = {
+    "PLATFORMS": "compiler",
+    "Fleet": "fleet",
+    "Robot": "robot",
+    "build_fmus": "build",
+    "fleet_path": "slave",
+    "fmu_path": "slave",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _NEED_FMPY:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_NEED_FMPY[name]}"), name)

@@ -1,10 +1,13 @@
 """What the gateway moves: anything that can be read and stepped one tick."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import replace
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
-from laglab_fmu import Reading, Robot, RobotParameters
+if TYPE_CHECKING:
+    from laglab_fmu import Reading, Robot, RobotParameters
 
 
 class Plant(Protocol):

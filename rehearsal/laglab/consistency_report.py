@@ -1,15 +1,21 @@
 """The verdicts on the filters' covariances, as a table and as a picture."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from rich.table import Table
 
 from laglab.consistency import Verdict
+from laglab.figure import empty_figure
 from laglab.scenario import Scenario
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 AXES = ("x", "y", "θ")
 
@@ -51,7 +57,7 @@ def _cells(verdict: Verdict) -> list[str]:
 
 def draw_consistency(scenario: Scenario, verdicts: Sequence[Verdict]) -> Figure:
     """Average NEES and NIS against their bounds, and claimed against true errors."""
-    figure = Figure(figsize=(13, 8), layout="constrained")
+    figure = empty_figure(13, 8)
     (nees, nis, x), (y, theta, _) = axes = figure.subplots(2, 3)
     axes[1, 2].axis("off")
     ticks = np.arange(len(verdicts[0].nees))

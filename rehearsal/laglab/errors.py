@@ -13,6 +13,12 @@ class ScenarioError(LaglabError):
     exit_code = 2
 
 
+class MissingExtraError(LaglabError):
+    """Something is not installed here; the text names the extra that brings it."""
+
+    exit_code = 2
+
+
 class RunError(LaglabError):
     """A run was cut short: a process or the link died."""
 

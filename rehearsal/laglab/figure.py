@@ -1,11 +1,12 @@
 """The paper's figures."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from laglab.errors import RunError
@@ -13,8 +14,19 @@ from laglab.pose import is_measured, robot_pose
 from laglab.scenario import Scenario
 from laglab_gateway import Trace
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 FIGURE_FILE = "figure.png"
 DOTS_PER_INCH = 120
+
+
+def empty_figure(width: float, height: float) -> Figure:
+    """So many inches to draw on; matplotlib is loaded here, for a side alone does without."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), layout="constrained")
 
 
 def draw_run(trace: Trace, scenario: Scenario) -> Figure:
@@ -24,7 +36,7 @@ def draw_run(trace: Trace, scenario: Scenario) -> Figure:
 
 def draw_side_by_side(runs: Sequence[tuple[Trace, Scenario]]) -> Figure:
     """The same three panels for each run, a row each."""
-    figure = Figure(figsize=(13, 4 * len(runs)), layout="constrained")
+    figure = empty_figure(13, 4 * len(runs))
     rows = figure.subfigures(len(runs), 1, squeeze=False)[:, 0]
     for row, (trace, scenario) in zip(rows, runs, strict=True):
         plane, heading, speeds = row.subplots(1, 3)
@@ -82,7 +94,7 @@ def draw_deviations(
     time: NDArray[np.float64], deviations: Mapping[str, NDArray[np.float64]], scenario: Scenario
 ) -> Figure:
     """Three panels as in Fig. 8: each filter's estimate less the pose, in x, y and θ."""
-    figure = Figure(figsize=(13, 4), layout="constrained")
+    figure = empty_figure(13, 4)
     labels = ("x [m]", "y [m]", "θ [rad]")
     for axis, (axes, label) in enumerate(zip(figure.subplots(1, 3), labels, strict=True)):
         for name, deviation in deviations.items():

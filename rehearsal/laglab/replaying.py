@@ -1,19 +1,25 @@
 """Estimating again from the log of a session."""
 
+from __future__ import annotations
+
 import csv
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 from rich.table import Table
 
 from laglab.errors import ScenarioError
+from laglab.figure import empty_figure
 from laglab.scenario import Scenario
 from laglab.sides import station_config
 from laglab.summary import deviation
 from laglab_controller import ESTIMATORS, Heard, Shadow, shadow
 from laglab_gateway import Trace
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Replays = Mapping[str, Shadow]
 COLUMNS = ("tick", "x", "y", "theta", "p_xx", "p_xy", "p_xt", "p_yy", "p_yt", "p_tt")
@@ -76,7 +82,7 @@ def draw_replays(
     scenario: Scenario, session: Sequence[Heard], replays: Replays, trace: Trace | None
 ) -> Figure:
     """Each component over time: measurements, estimates and, where known, the true pose."""
-    figure = Figure(figsize=(13, 4), layout="constrained")
+    figure = empty_figure(13, 4)
     Ts = scenario.sample_time
     sampled = [message for heard in session for message in heard.measurements]
     times = [message.tick * Ts for message in sampled]

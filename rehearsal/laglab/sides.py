@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+import laglab_fmu
 from laglab.scenario import Scenario
 from laglab_controller import Law, RobotModel, Station, StationConfig
-from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
     IDEAL,
     Direction,
@@ -65,9 +65,9 @@ class Setup:
     """Whether strangers may reach the real robot's own link, which is never signed."""
 
 
-def robot_parameters(scenario: Scenario) -> RobotParameters:
+def robot_parameters(scenario: Scenario) -> laglab_fmu.RobotParameters:
     """The robot that the FMU simulates."""
-    return RobotParameters(
+    return laglab_fmu.RobotParameters(
         wheel_radius=scenario.wheel_radius,
         track=scenario.track,
         sample_time=scenario.sample_time,
@@ -128,7 +128,7 @@ def open_gateway(
     """The robot's side, its FMU loaded until the context ends; its frames signed with a key."""
     parameters = robot_parameters(scenario)
     with (
-        Robot.open(scenario.fmi, parameters) as robot,
+        laglab_fmu.Robot.open(scenario.fmi, parameters) as robot,
         Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, key) as codec,
     ):
         plant = FmuPlant(robot, parameters)

@@ -7,8 +7,7 @@ from rich.console import Console
 from rich.table import Table
 
 from laglab.bench import filter as filter_bench
-from laglab.bench import loop as loop_bench
-from laglab_fmu import bench as fmu_bench
+from laglab.extras import STEPPING, require
 from laglab_protocol import bench as codec_bench
 
 app = typer.Typer(help="Ratios, measured side by side in one run.", no_args_is_help=True)
@@ -23,6 +22,9 @@ def bench_loop(
     realtime: Annotated[float, typer.Option(min=1.0, help="Seconds of real-time pacing.")] = 5.0,
 ) -> None:
     """The lock-step loop over UDP and a pty, against a bare echo and against one by hand."""
+    require(STEPPING)
+    from laglab.bench import loop as loop_bench  # needs FMPy
+
     console = Console()
     with Console(stderr=True).status("") as status:
         measured = loop_bench.measure(rounds, ticks, status.update)
@@ -70,12 +72,19 @@ def bench_fmu(
     ticks: Annotated[int, typer.Option(min=100, help="Steps of a single robot.")] = 3000,
 ) -> None:
     """One step of the FMU: ours, FMPy's two ways, the fleet per robot, a plain C loop."""
+    require(STEPPING)
+    from laglab_fmu import bench as fmu_bench  # needs FMPy
+
     with Console(stderr=True).status("stepping"):
         rows = fmu_bench.bench(robots, ticks)
     table = Table("way", "µs a robot-step", f"× {fmu_bench.PLAIN}", title="one step of the robot")
     for row in rows:
-        table.add_row(row.name, f"{1e6 * row.seconds:.3f}", f"{row.ratio:.1f}")
+        table.add_row(row.name, f"{1e6 * row.seconds:.3f}", f"{row.ratio:.2f}")
     Console().print(table)
+    seconds = {row.name: row.seconds for row in rows}
+    for version in ("FMI 2", "FMI 3"):
+        faster = seconds[f"{version}, FMPy's slave methods"] / seconds[f"{version}, our stepper"]
+        Console().print(f"{version}: our stepper is {faster:.1f} times as fast as FMPy's methods")
 
 
 def _timed(

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from laglab.extras import REHEARSING, require
 from laglab.figure import draw_side_by_side, save
 from laglab.rehearse import SCENARIO_FILE
 from laglab.scenario import load
@@ -18,6 +19,7 @@ def compare(
     ),
 ) -> None:
     """Draw several runs in one picture, a row each."""
+    require(REHEARSING)
     drawn = [(read_trace(run / TRACE_FILE), load(str(run / SCENARIO_FILE))) for run in runs]
     save(draw_side_by_side(drawn), out)
     print(out)

@@ -11,6 +11,7 @@ from laglab.commands.run import progress_bar
 from laglab.consistency import samples, verdict
 from laglab.consistency_report import consistency_table, draw_consistency
 from laglab.errors import ScenarioError
+from laglab.extras import REHEARSING, require
 from laglab.figure import save
 from laglab.options import on_scenario
 from laglab.scenario import Scenario
@@ -37,6 +38,7 @@ def consistency(
 
     The loop runs with the scenario's filter; all filters are judged on its records.
     """
+    require(REHEARSING)
     names = [_known(name) for name in judged or JUDGED]
     with progress_bar() as bar:
         runs = samples(scenario, names, seeds, workers or os.cpu_count() or 1)

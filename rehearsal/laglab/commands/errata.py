@@ -7,6 +7,7 @@ from rich.console import Console
 
 from laglab.commands.run import progress_bar
 from laglab.errata import VARIANTS, costs, costs_table
+from laglab.extras import STEPPING, require
 from laglab.options import on_scenario
 from laglab.scenario import Scenario
 
@@ -20,6 +21,7 @@ def errata(
     seeds: Annotated[int, typer.Option(min=1, help="Runs with noise, for each version.")] = 5,
 ) -> None:
     """Run the paper's filter as printed beside the filter as corrected, one misprint at a time."""
+    require(STEPPING)
     rows = []
     with progress_bar() as bar:
         for cost in bar.track(costs(scenario, seeds), total=len(VARIANTS), description="errata"):

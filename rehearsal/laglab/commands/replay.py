@@ -7,6 +7,7 @@ import typer
 from rich.console import Console
 
 from laglab.errors import ScenarioError
+from laglab.extras import REHEARSING, require
 from laglab.figure import save
 from laglab.rehearse import SCENARIO_FILE
 from laglab.replaying import draw_replays, replay_session, replays_table, write_replays
@@ -40,6 +41,7 @@ def replay(
     ),
 ) -> None:
     """Estimate again from the log of a session, of the simulated or of a real robot."""
+    require(REHEARSING)
     overrides = {} if p0 is None else {"initial_covariance": p0}
     told = load(scenario or str(tlog.parent / SCENARIO_FILE), overrides)
     session = list(read_session(tlog))

@@ -8,6 +8,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
 from laglab.errors import RunError, ScenarioError
+from laglab.extras import REHEARSING, require
 from laglab.options import on_scenario
 from laglab.rehearse import Ending, Transport, rehearse
 from laglab.report import results_table, warnings, write_results
@@ -51,6 +52,7 @@ def run(
     plant: PlantOption = None,
 ) -> None:
     """Rehearse SCENARIO: robot and controller, the delayed link between them, and the verdict."""
+    require(REHEARSING)
     if plant is not None and transport == "inline":
         raise ScenarioError("--plant: a real robot does not wait: take --transport udp or serial")
     setup = Setup(plant, key)

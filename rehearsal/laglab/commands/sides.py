@@ -9,6 +9,7 @@ import typer
 from rich.console import Console
 
 from laglab.commands.run import EXIT_CODES, KeyOption, PlantOption, progress_bar
+from laglab.extras import STEPPING, require
 from laglab.options import on_scenario
 from laglab.scenario import Scenario
 from laglab.sides import Setup, open_robot, open_station
@@ -46,6 +47,8 @@ def gateway(
     ] = False,
 ) -> None:
     """Be the robot's side of SCENARIO: wait for a controller, run to the end."""
+    if plant is None:
+        require(STEPPING)
     console = Console(stderr=True)
     with (
         open_robot(scenario, Setup(plant, key, not disarmed, unsigned)) as serve,

@@ -1,0 +1,95 @@
+"""Each side alone, where only what it needs is installed."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import venv
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+OPTIONS = ("lab", "--duration", "0.5", "--endpoint")
+
+
+class Machine:
+    """A fresh virtual environment with laglab as `pip install '.[EXTRA]'` leaves it."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._python = folder / "env" / "bin" / "python"
+        venv.create(folder / "env", with_pip=False)
+        tracked = subprocess.run(
+            ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True
+        ).stdout
+        for name in filter(None, tracked.split("\0")):
+            (folder / "clone" / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / name, folder / "clone" / name)
+
+    def install(self, what: str) -> None:
+        pip = [sys.executable, "-m", "pip", "--python", str(self._python), "install", "-q", what]
+        subprocess.run(pip, cwd=self._folder / "clone", check=True)
+
+    def has(self, module: str) -> bool:
+        found = [self._python, "-c", f"import {module}"]
+        return subprocess.run(found, stderr=subprocess.DEVNULL, check=False).returncode == 0
+
+    def start(self, *arguments: str) -> "subprocess.Popen[str]":
+        return subprocess.Popen(
+            [self._python.parent / "laglab", *arguments],
+            cwd=self._folder,
+            env={key: value for key, value in os.environ.items() if key != "PYTHONPATH"},
+            stderr=subprocess.PIPE,
+            text=True,
+        )
+
+    def refuses(self, *arguments: str) -> str:
+        """The one line that says what is missing."""
+        process = self.start(*arguments)
+        _, errors = process.communicate(timeout=30)
+        assert process.returncode == 2
+        assert len(errors.splitlines()) == 1
+        return errors
+
+
+def port_of(gateway: "subprocess.Popen[str]") -> str:
+    assert gateway.stderr is not None
+    line = gateway.stderr.readline()
+    found = re.search(r"listening on udpin://127\.0\.0\.1:(\d+)", line)
+    assert found, line
+    return found[1]
+
+
+def test_no_command_loads_what_it_does_not_need() -> None:
+    asked = "print([name for name in ('fmpy', 'matplotlib') if name in sys.modules])"
+    script = [sys.executable, "-c", f"import sys, laglab.command; {asked}"]
+    loaded = subprocess.run(script, capture_output=True, text=True, check=True)
+    assert loaded.stdout == "[]\n"
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(300)
+def test_each_side_runs_where_only_what_it_needs_is_installed(tmp_path: Path) -> None:
+    machine = Machine(tmp_path)
+    machine.install(".[controller]")
+    assert not machine.has("fmpy")
+    assert not machine.has("matplotlib")
+    assert "pip install '.[gateway]'" in machine.refuses("gateway", "lab")
+    assert "pip install '.[run]'" in machine.refuses("run", "lab")
+
+    ours = [sys.executable, "-m", "laglab", "gateway", *OPTIONS, "udpin://127.0.0.1:0"]
+    with subprocess.Popen(ours, stderr=subprocess.PIPE, text=True) as gateway:
+        station = machine.start("controller", *OPTIONS, f"udpout://127.0.0.1:{port_of(gateway)}")
+        assert "Traceback" not in station.communicate(timeout=40)[1]
+        assert (station.returncode, gateway.wait(10)) == (0, 0)
+
+    machine.install(".[gateway]")
+    assert machine.has("fmpy")
+    assert not machine.has("matplotlib")
+    with machine.start("gateway", *OPTIONS, "udpin://127.0.0.1:0") as gateway:
+        station = machine.start("controller", *OPTIONS, f"udpout://127.0.0.1:{port_of(gateway)}")
+        assert "Traceback" not in station.communicate(timeout=40)[1]
+        assert (station.returncode, gateway.wait(10)) == (0, 0)
+    assert "matplotlib is not installed" in machine.refuses("run", "lab")
