@@ -115,4 +115,5 @@ class Controller:
 
 def diverged(x: Vector) -> bool:
     """Whether a pose estimate is not finite, or further than DIVERGED from the origin."""
-    return not np.all(np.isfinite(x)) or math.hypot(x[0], x[1]) > DIVERGED
+    x_, y, theta = x.tolist()
+    return not (math.isfinite(theta) and math.hypot(x_, y) <= DIVERGED)

@@ -86,7 +86,8 @@ class DelayedEkf(Generic[W]):
         inputs: Sequence[Applied] = (),
     ) -> DelayedState[W]:
         """Roll back to the oldest news, replay from there, then go on to the newest measurement."""
-        oldest, newest = _span(state.filtered)
+        newest = state.filtered.newest.tick
+        oldest = newest - min(state.filtered.length - 1, self.memory)
         known = {j + 1: u for j, u in inputs if oldest <= j < state.tick}
         late = {s: z for s, z in reversed(measurements) if oldest <= s <= newest}
         late_known = {tick: u for tick, u in known.items() if tick <= newest}
@@ -156,12 +157,6 @@ class DelayedEkf(Generic[W]):
 
 def _sampled(measured: Measured) -> int:
     return measured.tick
-
-
-def _span(filtered: Log[Filtered]) -> tuple[int, int]:
-    """The oldest and newest tick that can still be gone back to."""
-    newest = filtered.newest.tick
-    return newest - filtered.length + 1, newest
 
 
 def _rolled_back(

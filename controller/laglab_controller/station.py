@@ -84,6 +84,11 @@ class Station:
         """The last tick that was answered; None before the first."""
         return self._tick
 
+    @property
+    def warning(self) -> str | None:
+        """What the station has to warn of; None while there is nothing."""
+        return self._warning
+
     def report(self) -> StationReport:
         """How the run went so far."""
         return StationReport(

@@ -122,7 +122,9 @@ class Conversation:
             self._watch.tell(notices)
         if replies := self._gateway.take_replies():
             self.send(replies)
-        self._watch.poll(self._gateway.state)
+        self._watch.poll(lambda: self._gateway.state)
+        for name in self._watch.take_lost():
+            self._gateway.announce(f"lost the watcher {name}")
 
     def listen_for(self, done: Callable[[], bool]) -> bool:
         """Listen until `done`, or until it is time to repeat: then False."""

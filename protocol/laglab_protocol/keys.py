@@ -77,10 +77,21 @@ class StoredTimestamps(Timestamps):
 
     def _write(self) -> None:
         named = {"/".join(map(str, stream)): value for stream, value in self._written.items()}
-        beside = self._path.with_name(self._path.name + ".new")
-        with os.fdopen(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as file:
-            json.dump(named, file)
-        beside.replace(self._path)
+        try:
+            _replace(self._path, json.dumps(named))
+        except OSError as error:
+            raise KeyFileError(
+                f"cannot keep the timestamps {self._path}: {error.strerror}; without them old "
+                "frames could be played again: make room, or let this user write there"
+            ) from error
+
+
+def _replace(path: Path, text: str) -> None:
+    """Whole or not at all, and for the owner only."""
+    beside = path.with_name(path.name + ".new")
+    with os.fdopen(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as file:
+        file.write(text)
+    beside.replace(path)
 
 
 def _stream(name: str) -> Stream:

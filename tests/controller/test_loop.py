@@ -3,10 +3,20 @@
 import threading
 import time
 
+import numpy as np
 import pytest
 
 from laglab_controller import RobotSilentError, Station, StationConfig, run_station
-from laglab_protocol import Command, End, EndReason, Receiver, Sender, Tick, open_endpoint
+from laglab_protocol import (
+    Command,
+    End,
+    EndReason,
+    Measurement,
+    Receiver,
+    Sender,
+    Tick,
+    open_endpoint,
+)
 
 
 @pytest.fixture
@@ -20,17 +30,18 @@ def link():
 
 
 def drive(endpoint, *messages):
-    """A robot that says each message until it is answered; what it heard."""
+    """A robot that says each message, or list of messages, until it is answered; what it heard."""
     sender, receiver, heard = Sender(1, 1), Receiver(), []
     while not endpoint.receive(1.0):
         pass
     endpoint.accept_peer()
     for message in messages:
-        endpoint.send(sender.frame(message))
+        together = message if isinstance(message, list) else [message]
+        endpoint.send(b"".join(map(sender.frame, together)))
         while not (answer := [f.message for f in receiver.receive(endpoint.receive(1.0))]) or (
             not isinstance(answer[-1], (Command, End))
         ):
-            endpoint.send(sender.frame(message))
+            endpoint.send(b"".join(map(sender.frame, together)))
         heard += answer
     return heard
 
@@ -51,6 +62,21 @@ def test_it_makes_itself_known_answers_and_ends(link):
     thread.join(5)
     assert results == [End(1, EndReason.COMPLETED)]
     assert [message.tick for message in heard if isinstance(message, Command)] == [0, 1]
+
+
+def test_a_warning_is_passed_on_once(link):
+    robot, endpoint = link
+    config = StationConfig(estimator="popf", initial_covariance=np.eye(3))
+    warnings = []
+    thread = threading.Thread(
+        target=run_station, args=(Station(config), endpoint, 3.0, warnings.append)
+    )
+    thread.start()
+    measured = [Measurement(0.0, 0.0, 0.0, 0.0, 0.0, 0, -1), Tick(5, 1)]
+    drive(robot, Tick(0, 0), measured, Tick(6, 0), End(6, EndReason.COMPLETED))
+    thread.join(5)
+    (warning,) = warnings
+    assert warning.startswith("tick 5: popf's gain is")
 
 
 def test_a_robot_that_falls_silent_is_named_with_its_last_tick(link):

@@ -43,13 +43,15 @@ def is_covariance(P, least=0.0):
 @pytest.mark.slow
 @pytest.mark.timeout(180)
 def test_the_ekf_keeps_its_covariance_for_a_million_ticks():
-    """predict and correct are those of `ekf` and of `delayed-ekf`."""
+    """predict and correct are those of `ekf` and of `delayed-ekf`; every fifth tick measures."""
     inputs, measurements = drive(1000, (0.0, 0.0, 0.0))
     belief = Belief(measurements[0], np.eye(3) * 1e-3)
     z = np.zeros(3)
     for _ in range(1000):
-        for u in inputs:
-            belief = correct(ROBOT, Belief(*ROBOT.predict(*belief, u)), z)
+        for k, u in enumerate(inputs):
+            belief = Belief(*ROBOT.predict(*belief, u))
+            if k % 5 == 0:
+                belief = correct(ROBOT, belief, z)
         assert is_covariance(belief.P)
         assert np.linalg.eigvalsh(belief.P)[0] > 0
     assert np.all(np.isfinite(belief.x))

@@ -49,7 +49,7 @@ from laglab_protocol import (
 Process = Any
 Start = Callable[..., Process]
 LAGLAB = (sys.executable, "-m", "laglab")
-SPEED = 4
+FAST, UNHURRIED = 4, 2
 N, M = 10, 20
 
 
@@ -69,12 +69,12 @@ def port_of(gateway: Process) -> str:
 def rig(start: Start, firmware: Path, tmp_path: Path) -> Callable[..., Rig]:
     """The scenario `lab`: gateway, controller, and the robot on the gateway's pty."""
 
-    def call(*options: str) -> Rig:
+    def call(*options: str, speed: int = FAST) -> Rig:
         lab = ("lab", "-n", str(N), "-m", str(M), *options)
         plant = ("--plant", f"pty://{tmp_path}/port", "--out", "run")
         gateway = start(*LAGLAB, "gateway", *lab, *plant, "--endpoint", "udpin://127.0.0.1:0")
         address = f"udpout://127.0.0.1:{port_of(gateway)}"
-        robot = start(firmware, "--speed", SPEED, tmp_path / "port")
+        robot = start(firmware, "--speed", speed, tmp_path / "port")
         return Rig(gateway, start(*LAGLAB, "controller", *lab, "--endpoint", address), robot)
 
     return call
@@ -110,14 +110,14 @@ def assert_robot_let_go(robot: Process) -> None:
 def test_the_same_controller_stabilises_a_real_robot(
     rig: Callable[..., Rig], tmp_path: Path
 ) -> None:
-    gateway, station, robot = rig("--duration", "12")
-    assert "completed at tick 1200" in ended(gateway, 0)
+    gateway, station, robot = rig("--duration", "15", speed=UNHURRIED)
+    assert "completed at tick 1500" in ended(gateway, 0)
     ended(station, 0)
     assert_robot_let_go(robot)
     assert not (tmp_path / "port").is_symlink()
 
     trace = read_trace(tmp_path / "run" / "trace.csv")
-    assert trace["tick"].tolist() == list(range(1201))
+    assert trace["tick"].tolist() == list(range(1501))
     for axis, there in (("x", -3.0), ("y", -3.0), ("theta", 0.0)):
         assert np.isnan(trace[axis]).all(), "nobody knows the true pose"
         assert trace[f"{axis}_meas"][:10].mean() == pytest.approx(there, abs=0.02)
@@ -152,7 +152,7 @@ def test_a_run_with_a_real_robot_says_that_its_pose_is_measured(
     while not port.is_symlink():
         assert run.poll() is None
         time.sleep(0.02)
-    robot = start(firmware, "--speed", SPEED, port)
+    robot = start(firmware, "--speed", UNHURRIED, port)
     said, errors = run.communicate(timeout=30)
     assert run.returncode == 0, errors
     assert "as measured" in said
@@ -209,7 +209,7 @@ def gateway_as_robot() -> Iterator[tuple[str, "Future[Outcome]"]]:
     def drive() -> Outcome:
         with Robot.open(3, parameters) as robot:
             gateway = Gateway(FmuPlant(robot, parameters), config)
-            patience = Patience(silence=20.0, connect=20.0)
+            patience = Patience(silence=10.0, connect=20.0)
             recorder, period = NoRecorder(), parameters.sample_time
             served = serve_realtime(gateway, endpoint, recorder, patience, lambda _: None, period)
             return served[0]

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from contextlib import ExitStack
+from pathlib import Path
 
 import pytest
 
@@ -37,6 +38,7 @@ from laglab_protocol import (
     Sender,
     open_endpoint,
 )
+from laglab_protocol.endpoints import tty
 from laglab_protocol.generated import laglab as mavlink
 
 PARAMETERS = RobotParameters(start=(-3.0, -2.0, 0.0), noise=False)
@@ -149,7 +151,7 @@ def test_a_watcher_sees_and_asks_but_does_not_drive(robot: Robot, stack: ExitSta
     gateway.open_tick()
     sender = station()
     theirs.send(sender.frame(Command(1.0, 0.0, 0, 1, 1, 0)) + sender.frame(request(512, 32.0)))
-    watch.poll(gateway.state)
+    watch.poll(lambda: gateway.state)
 
     seen = heard(theirs)
     assert not gateway.answered
@@ -163,3 +165,18 @@ def heard(endpoint: Endpoint) -> list[Message]:
     while data := endpoint.receive(0.2):
         messages += [frame.message for frame in receiver.receive(data)]
     return messages
+
+
+def test_a_watcher_that_stops_reading_is_let_go(
+    robot: Robot, stack: ExitStack, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tty, "STALL_TIMEOUT", 0.01)
+    gateway = gateway_of(robot)
+    line = stack.enter_context(open_endpoint(f"pty://{tmp_path / 'watch'}"))
+    watch = Watch(gateway.services, [Watcher(line, Codec(ROBOT_SYSTEM, ROBOT_COMPONENT))])
+    for _ in range(3000):
+        watch.tell([Heartbeat(0, 10, 0, 0, 4, 3)])
+
+    assert watch.take_lost() == [line.name]
+    assert watch.take_lost() == []
+    watch.tell([Heartbeat(0, 10, 0, 0, 4, 3)])

@@ -107,21 +107,25 @@ def test_a_faultless_controller_conforms(key_file: Path) -> None:
     assert controller_with("", key_file).failed == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", ROBOT)
 def test_a_broken_robot_fails_its_own_item_alone(fault: str) -> None:
     assert robot_with(fault).failed == [ROBOT[fault]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", CONTROLLER)
 def test_a_broken_controller_fails_its_own_item_alone(fault: str) -> None:
     assert controller_with(fault).failed == [CONTROLLER[fault]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", SIGNED)
 def test_a_trusting_robot_fails_its_own_item_alone(fault: str, key_file: Path) -> None:
     assert robot_with(fault, key_file).failed == [SIGNED[fault]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fault", SIGNED)
 def test_a_trusting_controller_fails_its_own_item_alone(fault: str, key_file: Path) -> None:
     assert controller_with(fault, key_file).failed == [SIGNED[fault]]

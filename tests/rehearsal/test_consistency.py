@@ -47,8 +47,8 @@ def test_a_diverged_seed_and_a_lost_covariance_are_counted():
 
 @pytest.mark.slow
 def test_delayed_ekf_is_consistent_and_popf_and_ekf_are_too_sure():
-    scenario = load("lab", {"duration": 4.0})
-    names = ("ekf", "popf", "popf-exact", "delayed-ekf")
+    scenario = load("lab", {"duration": 2.0})
+    names = ("ekf", "popf", "delayed-ekf")
     got = list(samples(scenario, names, seeds=40, workers=2))
     verdicts = {name: verdict(name, [one[name] for one in got], 20) for name in names}
     delayed = verdicts["delayed-ekf"]
@@ -56,7 +56,7 @@ def test_delayed_ekf_is_consistent_and_popf_and_ekf_are_too_sure():
     assert delayed.inside(delayed.nis) > 0.9
     for name in ("popf", "ekf"):
         assert verdicts[name].mean(verdicts[name].nees) > delayed.bounds[1]
-        assert np.all(verdicts[name].claimed[200] < verdicts[name].true[200])
+        assert np.all(verdicts[name].claimed[80] < verdicts[name].true[80])
 
 
 def test_the_command_leaves_table_and_picture(laglab, tmp_path):

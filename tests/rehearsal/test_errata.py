@@ -7,7 +7,7 @@ from laglab_controller import Erratum
 
 def test_what_each_misprint_costs():
     """Without noise only the innovation of (28) shows: it alone keeps the robot from its goal."""
-    rows = dict(zip(VARIANTS, costs(load("fig8"), seeds=1), strict=True))
+    rows = dict(zip(VARIANTS, costs(load("fig8", {"duration": 5.0}), seeds=1), strict=True))
     by_errata = {variant.errata: cost for variant, cost in rows.items()}
     corrected = by_errata[frozenset()]
     assert corrected.converged

@@ -30,6 +30,8 @@ def test_nothing_in_the_readme_is_left_out() -> None:
     assert {INSTALL_AND_RUN, INSTALL_AND_TEST, *TWO_SIDES, *OTHERS} == set(COMMANDS)
 
 
+@pytest.mark.slow
+@pytest.mark.timeout(300)
 def test_each_command_works(tmp_path: Path) -> None:
     for command in OTHERS:
         result = subprocess.run(
@@ -41,7 +43,7 @@ def test_each_command_works(tmp_path: Path) -> None:
             check=False,
         )
         assert result.returncode == 0, f"{command}: {result.stderr}"
-        assert result.stdout or "compare" in command
+        assert result.stdout
 
 
 def test_the_two_sides_find_each_other(tmp_path: Path) -> None:

@@ -19,7 +19,10 @@ def fmu() -> None:
 
 @app.command()
 def build(
-    out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where the FMUs go.")] = Path(),
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Where they go; else where laglab's are."),
+    ] = None,
     all_platforms: Annotated[
         bool,
         typer.Option(
@@ -30,7 +33,8 @@ def build(
 ) -> None:
     """Build Robot2.fmu, Robot3.fmu and Fleet3.fmu, for this machine or for all."""
     require(STEPPING)
+    folder = out or Path(laglab_fmu.__file__).parent
     with Console(stderr=True).status("compiling"):
-        built = laglab_fmu.build_fmus(out, laglab_fmu.PLATFORMS if all_platforms else ())
+        built = laglab_fmu.build_fmus(folder, laglab_fmu.PLATFORMS if all_platforms else ())
     for path in built:
         print(path)

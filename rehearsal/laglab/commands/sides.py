@@ -93,5 +93,10 @@ def controller(
     """Be the remote station of SCENARIO: stabilise the robot at the other end."""
     with open_endpoint(endpoint) as link, open_station(scenario, key) as station:
         typer.echo(f"calling {link.name}", err=True)
-        end = run_station(station, link, scenario.silence_timeout)
+        end = run_station(
+            station,
+            link,
+            scenario.silence_timeout,
+            warn=lambda text: typer.echo(f"warning: {text}", err=True),
+        )
     raise typer.Exit(EXIT_CODES[EndReason(end.reason)])
