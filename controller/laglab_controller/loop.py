@@ -67,4 +67,5 @@ def _answer(station: Station, endpoint: Endpoint, timeout: float) -> bool:
     if answer:
         endpoint.accept_peer()
         endpoint.send(answer)
+        station.look_ahead()
     return bool(answer)

@@ -59,6 +59,8 @@ class Station:
         self._measurements: list[Measurement] = []
         self._first = 0
         self._control = self._controller.start()
+        self._ahead: Control | None = None
+        """What the next tick starts from, if there was time to predict it already."""
         self._answer: list[Message] = []
         self._tick: int | None = None
         self._outcome: End | None = None
@@ -115,6 +117,12 @@ class Station:
         if datagram:
             frames += self._receiver.end_datagram()
         return b"".join(self._hear(frame) for frame in frames)
+
+    def look_ahead(self) -> None:
+        """Predict the next tick now, while the robot is busy with the answer to this one."""
+        under_way = self._tick is not None and self._joining is None and self._outcome is None
+        if under_way and self._ahead is None:
+            self._ahead = self._controller.advance(self._control)
 
     def end(self, reason: EndReason) -> bytes:
         """End the run from this side: the frame to send."""
@@ -201,7 +209,8 @@ class Station:
         """On to `tick`; over ticks that were lost on the way the robot held the last command."""
         control = self._control
         for _ in range(0 if self._tick is None else tick - self._tick):
-            control = self._controller.advance(control)
+            control = self._ahead or self._controller.advance(control)
+            self._ahead = None
         arrived = measured(measurements, self._first, tick)
         if arrived:
             self._measurement_delay = tick - self._first - arrived[-1].tick
