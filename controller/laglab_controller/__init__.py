@@ -5,7 +5,7 @@ from laglab_controller.controller import Control, Controller, StationConfig
 from laglab_controller.delayed import DelayedEkf
 from laglab_controller.ekf import Ekf
 from laglab_controller.errata import Erratum, PrintedController
-from laglab_controller.errors import ConfigError, RobotSilentError, StationError
+from laglab_controller.errors import ConfigError, RobotSilentError, StampError, StationError
 from laglab_controller.estimator import Applied, Estimator, Measured, State
 from laglab_controller.exact import PopfExact
 from laglab_controller.family import ESTIMATORS
@@ -50,6 +50,7 @@ __all__ = [
     "RobotModel",
     "RobotSilentError",
     "Shadow",
+    "StampError",
     "State",
     "Station",
     "StationConfig",

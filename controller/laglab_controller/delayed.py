@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Generic, NamedTuple, TypeVar
 
 from laglab_controller import kalman
-from laglab_controller.estimator import Applied, Measured
+from laglab_controller.estimator import Applied, Measured, by_sampling
 from laglab_controller.kalman import Belief, Compared, Innovation
 from laglab_controller.log import Log, append
 from laglab_controller.model import Matrix, Model, Vector
@@ -86,6 +86,7 @@ class DelayedEkf(Generic[W]):
         inputs: Sequence[Applied] = (),
     ) -> DelayedState[W]:
         """Roll back to the oldest news, replay from there, then go on to the newest measurement."""
+        measurements = by_sampling(measurements, state.tick)
         newest = state.filtered.newest.tick
         oldest = newest - min(state.filtered.length - 1, self.memory)
         known = {j + 1: u for j, u in inputs if oldest <= j < state.tick}
@@ -93,7 +94,7 @@ class DelayedEkf(Generic[W]):
         late_known = {tick: u for tick, u in known.items() if tick <= newest}
         if late or late_known:
             state = self._revise(state, late, late_known)
-        for s, z in sorted(measurements, key=_sampled):
+        for s, z in measurements:
             state = self._advance(state, s, z, known)
         return self._put_right(state, known)
 
@@ -153,10 +154,6 @@ class DelayedEkf(Generic[W]):
             else:
                 filtered = self._extend(filtered, u, z)
         return DelayedState(state.tick, filtered or state.filtered, state.window, self.windows)
-
-
-def _sampled(measured: Measured) -> int:
-    return measured.tick
 
 
 def _rolled_back(

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from laglab_controller import kalman
-from laglab_controller.estimator import Applied, Measured
+from laglab_controller.estimator import Applied, Measured, by_sampling
 from laglab_controller.kalman import Belief, Compared, Innovation
 from laglab_controller.model import Matrix, Model, Vector
 
@@ -40,7 +40,7 @@ class Ekf:
     ) -> EkfState:
         """(8) for every measurement newer than all before; it has no past to correct."""
         tick, x, P, newest, compared = state
-        for s, z in measurements:
+        for s, z in by_sampling(measurements, tick):
             if s > newest:
                 compared = Compared(Belief(x, P), z)
                 x, P = kalman.correct(self.model, *compared)

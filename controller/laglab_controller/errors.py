@@ -9,5 +9,9 @@ class ConfigError(StationError):
     """A value that the station or a model is given is not as it must be; the message names it."""
 
 
+class StampError(StationError):
+    """A measurement says that it was sampled before tick 0, or in the future."""
+
+
 class RobotSilentError(StationError):
     """The robot was heard, and then no more."""

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol, TypeVar
 
+from laglab_controller.errors import StampError
 from laglab_controller.kalman import Innovation
 from laglab_controller.model import Matrix, Vector
 
@@ -19,6 +20,20 @@ class Measured(NamedTuple):
 
     tick: int
     z: Vector
+
+
+def by_sampling(measurements: Sequence[Measured], k: int) -> Sequence[Measured]:
+    """Oldest first. Raises StampError unless all were sampled at ticks 0 ... k."""
+    if len(measurements) > 1:
+        measurements = sorted(measurements, key=_tick)
+    if measurements and not (measurements[0].tick >= 0 and measurements[-1].tick <= k):
+        stamps = ", ".join(str(s) for s, _ in measurements)
+        raise StampError(f"sampled at tick {stamps}, at tick {k}: give ticks from 0 to {k}")
+    return measurements
+
+
+def _tick(measured: Measured) -> int:
+    return measured.tick
 
 
 class State(Protocol):
@@ -65,6 +80,7 @@ class Estimator(Protocol[S]):
 
         `inputs` tells of earlier ticks at which another input was in force than predict was given.
         Of two measurements sampled at the same tick, the second is a repeat and is not used.
+        Raises StampError for one sampled before tick 0 or after `state.tick`.
         """
         ...
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from laglab_controller.estimator import Applied, Measured
+from laglab_controller.estimator import Applied, Measured, by_sampling
 from laglab_controller.kalman import Belief, Compared, Innovation, gain, innovation
 from laglab_controller.model import Matrix, Model, Vector, symmetric
 
@@ -62,7 +62,7 @@ class PopfExact:
         self, state: ExactState, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
     ) -> ExactState:
         """(11) for every measurement newer than all before."""
-        for s, z in sorted(measurements, key=lambda measured: measured.tick):
+        for s, z in by_sampling(measurements, state.tick):
             if s > state.newest and state.tick - s < len(state.priors):
                 state = self._correct(state, s, z)
         return state

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from laglab_controller.estimator import Applied, Measured
+from laglab_controller.estimator import Applied, Measured, by_sampling
 from laglab_controller.history import History
 from laglab_controller.kalman import Belief, Compared, Innovation, gain, innovation
 from laglab_controller.model import Matrix, Model, Vector, identity, symmetric
@@ -74,7 +74,7 @@ class Popf:
         self, state: PopfState, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
     ) -> PopfState:
         """(28) for every measurement that is not a repeat and not too old."""
-        for s, z in measurements:
+        for s, z in by_sampling(measurements, state.tick):
             lateness = state.tick - s
             if lateness < self.memory and not state.used >> lateness & 1:
                 state = self._correct(state, s, z)

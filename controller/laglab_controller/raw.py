@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from laglab_controller.estimator import Applied, Measured
+from laglab_controller.estimator import Applied, Measured, by_sampling
 from laglab_controller.kalman import Innovation
 from laglab_controller.model import Matrix, Vector
 
@@ -36,7 +36,7 @@ class Raw:
         self, state: RawState, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
     ) -> RawState:
         """The newest measurement; those older than one already seen are of no use to it."""
-        for tick, z in measurements:
+        for tick, z in by_sampling(measurements, state.tick):
             if tick > state.newest:
                 state = state._replace(x=z, newest=tick)
         return state

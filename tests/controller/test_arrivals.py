@@ -14,6 +14,7 @@ from laglab_controller import (
     Rewinding,
     RigidMotions,
     RobotModel,
+    StampError,
 )
 
 ROBOT = RobotModel()
@@ -56,7 +57,7 @@ def literal_popf(arrivals):
             x, P = ROBOT.f(x, INPUTS[k - 1]), A @ P @ A.T + W @ ROBOT.Q @ W.T
         priors.append((x, P))
         factors.append(np.eye(3))
-        for s in arrivals.get(k, []):
+        for s in sorted(arrivals.get(k, [])):
             if s in used:
                 continue
             used.add(s)
@@ -130,6 +131,15 @@ def test_a_long_silence_then_a_measurement(name):
     corrected = estimator.correct(state, [Measured(TICKS - 3, MEASUREMENTS[0])])
     assert np.abs(corrected.x - state.x).max() > 1e-4
     assert np.trace(corrected.P) < np.trace(state.P)
+
+
+@pytest.mark.parametrize("name", list(made(8)))
+@pytest.mark.parametrize("stamp", [-1, TICKS + 1])
+def test_stamps_that_cannot_be_are_refused(name, stamp):
+    estimator = made(8)[name]
+    state = run(estimator, {})
+    with pytest.raises(StampError, match=f"sampled at tick .*{stamp}.*, at tick {TICKS}: give"):
+        estimator.correct(state, [Measured(stamp, X_0), Measured(TICKS, X_0)])
 
 
 @pytest.mark.parametrize("name", ["ekf", "popf-exact"])

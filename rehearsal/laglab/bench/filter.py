@@ -25,8 +25,6 @@ from laglab_controller import (
 
 Array = NDArray[np.float64]
 
-ROUNDS = 8
-"""Every filter has so many turns; the fastest counts, as the least disturbed one."""
 OURS = ("ekf", "popf", "popf-exact", "delayed-ekf")
 FILTERPY = "filterpy's EKF"
 START = np.zeros(3)
@@ -59,11 +57,14 @@ def make_drive(ticks: int) -> Drive:
     return Drive(inputs, random.normal(size=(ticks + 1, 3)) * 0.1)
 
 
-def timings(contenders: dict[str, Turn], delays: tuple[int, ...], ticks: int) -> Iterator[Timing]:
-    """Round after round in turn, so that a busy machine disturbs all alike."""
+def timings(
+    contenders: dict[str, Turn], delays: tuple[int, ...], ticks: int, rounds: int
+) -> Iterator[Timing]:
+    """Round after round in turn, so that a busy machine disturbs all alike; the fastest of a
+    filter's turns counts, as the least disturbed one."""
     drive = make_drive(ticks + max(delays))
     fastest = {(name, m): np.inf for name in contenders for m in delays}
-    for _ in range(ROUNDS):
+    for _ in range(rounds):
         for name, m in fastest:
             fastest[name, m] = min(fastest[name, m], contenders[name](drive, m))
     for name in contenders:

@@ -41,14 +41,15 @@ def bench_loop(
 @app.command("filter")
 def bench_filter(
     ticks: Annotated[int, typer.Option(min=10, help="Length of the drive.")] = 1000,
+    rounds: Annotated[int, typer.Option(min=1, help="Turns of each filter.")] = 8,
 ) -> None:
     """What a tick of each filter costs at m + n = 4, 40 and 400, beside filterpy's EKF."""
     console = Console()
-    alone = _timed(console, "filters", filter_bench.filters(), (4, 40, 400), ticks)
+    alone = _timed(console, "filters", filter_bench.filters(), (4, 40, 400), ticks, rounds)
     has_filterpy = any(row.name == filter_bench.FILTERPY for row in alone)
     yardstick = filter_bench.FILTERPY if has_filterpy else "ekf"
     console.print(filter_bench.timings_table("the filter alone", alone, yardstick))
-    whole = _timed(console, "controllers", filter_bench.controllers(), (2, 20, 200), ticks)
+    whole = _timed(console, "controllers", filter_bench.controllers(), (2, 20, 200), ticks, rounds)
     title = "filter, extrapolation over n = m ticks, law"
     console.print(filter_bench.timings_table(title, whole, "ekf"))
     if not has_filterpy:
@@ -97,6 +98,7 @@ def _timed(
     contenders: dict[str, filter_bench.Turn],
     delays: tuple[int, ...],
     ticks: int,
+    rounds: int,
 ) -> list[filter_bench.Timing]:
     with console.status(f"timing {what}"):
-        return list(filter_bench.timings(contenders, delays, ticks))
+        return list(filter_bench.timings(contenders, delays, ticks, rounds))
