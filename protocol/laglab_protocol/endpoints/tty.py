@@ -3,6 +3,7 @@
 import contextlib
 import os
 import tty
+from abc import ABC, abstractmethod
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -22,7 +23,7 @@ STALL_TIMEOUT = 1.0
 """Seconds that a full queue may stay full before the far end counts as stalled."""
 
 
-class _Tty:
+class _Tty(ABC):
     """Reads and writes a descriptor that does not block."""
 
     datagrams = False
@@ -73,8 +74,8 @@ class _Tty:
             f"{self.name}: the far end is gone ({reason}): plug it in again, then start again"
         )
 
-    def close(self) -> None:
-        raise NotImplementedError
+    @abstractmethod
+    def close(self) -> None: ...
 
     def __enter__(self) -> Self:
         return self
