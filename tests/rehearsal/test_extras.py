@@ -2,7 +2,6 @@
 
 import os
 import re
-import shutil
 import subprocess
 import sys
 import venv
@@ -10,27 +9,23 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+BASE_PYTHON = f"{sys.base_prefix}/bin/python3"
+"""The environment of the tests needs no pip of its own."""
 OPTIONS = ("lab", "--duration", "0.5", "--endpoint")
 
 
 class Machine:
     """A fresh virtual environment with laglab as `pip install '.[EXTRA]'` leaves it."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, clone: Path) -> None:
         self._folder = folder
+        self._clone = clone
         self._python = folder / "env" / "bin" / "python"
         venv.create(folder / "env", with_pip=False)
-        tracked = subprocess.run(
-            ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True
-        ).stdout
-        for name in filter(None, tracked.split("\0")):
-            (folder / "clone" / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(ROOT / name, folder / "clone" / name)
 
     def install(self, what: str) -> None:
-        pip = [sys.executable, "-m", "pip", "--python", str(self._python), "install", "-q", what]
-        subprocess.run(pip, cwd=self._folder / "clone", check=True)
+        pip = [BASE_PYTHON, "-m", "pip", "--python", str(self._python), "install", "-q", what]
+        subprocess.run(pip, cwd=self._clone, check=True)
 
     def has(self, module: str) -> bool:
         found = [self._python, "-c", f"import {module}"]
@@ -71,8 +66,10 @@ def test_no_command_loads_what_it_does_not_need() -> None:
 
 @pytest.mark.slow
 @pytest.mark.timeout(300)
-def test_each_side_runs_where_only_what_it_needs_is_installed(tmp_path: Path) -> None:
-    machine = Machine(tmp_path)
+def test_each_side_runs_where_only_what_it_needs_is_installed(
+    bare_clone: Path, tmp_path: Path
+) -> None:
+    machine = Machine(tmp_path, bare_clone)
     machine.install(".[controller]")
     assert not machine.has("fmpy")
     assert not machine.has("matplotlib")

@@ -2,7 +2,6 @@
 
 import re
 import shlex
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -73,22 +72,16 @@ def test_ci_runs_the_readmes_test_command() -> None:
 
 @pytest.mark.slow
 @pytest.mark.timeout(300)
-def test_a_bare_clone_installs_and_runs(tmp_path: Path) -> None:
-    tracked = subprocess.run(
-        ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True
-    ).stdout
-    for name in filter(None, tracked.split("\0")):
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(ROOT / name, tmp_path / name)
+def test_a_bare_clone_installs_and_runs(bare_clone: Path) -> None:
     result = subprocess.run(
-        ["bash", "-c", INSTALL_AND_RUN], cwd=tmp_path, capture_output=True, text=True, check=False
+        ["bash", "-c", INSTALL_AND_RUN], cwd=bare_clone, capture_output=True, text=True, check=False
     )
     assert result.returncode == 0, result.stderr
     assert "converged" in result.stdout
-    assert (tmp_path / "runs" / "fig6" / "figure.png").exists()
-    installed = tmp_path / ".venv" / "bin" / "laglab"
-    subprocess.run([installed, "fmu", "build", "--out", "built"], cwd=tmp_path, check=True)
-    assert sorted(path.name for path in (tmp_path / "built").iterdir()) == [
+    assert (bare_clone / "runs" / "fig6" / "figure.png").exists()
+    installed = bare_clone / ".venv" / "bin" / "laglab"
+    subprocess.run([installed, "fmu", "build", "--out", "built"], cwd=bare_clone, check=True)
+    assert sorted(path.name for path in (bare_clone / "built").iterdir()) == [
         "Fleet3.fmu",
         "Robot2.fmu",
         "Robot3.fmu",
