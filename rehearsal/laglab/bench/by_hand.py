@@ -8,7 +8,6 @@ is no repeat after a loss, no check of who speaks, no log of frames, no failsafe
 import csv
 import importlib
 import os
-import tempfile
 import tty
 from collections import deque
 from collections.abc import Iterator
@@ -37,7 +36,7 @@ INPUTS = ("omega_left", "omega_right")
 
 
 def seconds_per_tick(transport: str, scenario: Scenario, directory: Path) -> float:
-    """Wall time [s] of one tick, over the scenario's whole run; leaves its trace in `directory`."""
+    """Wall time [s] of one tick, over the scenario's whole run; fills `directory`."""
     with started("robot", robot_process, scenario, transport, directory) as robot:
         match robot.next_report():
             case Listening(address):
@@ -56,9 +55,8 @@ def robot_process(scenario: Scenario, transport: str, directory: Path, reports: 
     """Listens, drives to the last tick, and reports how long that took."""
     mavutil = _mavutil()
     with (
-        tempfile.TemporaryDirectory(prefix="laglab-bench-") as folder,
         _robot_link(mavutil, transport) as (link, address),
-        _fmu(scenario, folder) as (fmu, references),
+        _fmu(scenario, directory / "fmu") as (fmu, references),
         (directory / TRACE_FILE).open("w", newline="") as file,
     ):
         trace = csv.writer(file)
@@ -179,14 +177,14 @@ def _master_port(mavutil: Any, descriptor: int) -> Any:
 
 
 @contextmanager
-def _fmu(scenario: Scenario, folder: str) -> Iterator[tuple[FMU2Slave, dict[str, int]]]:
+def _fmu(scenario: Scenario, folder: Path) -> Iterator[tuple[FMU2Slave, dict[str, int]]]:
     """The robot as FMPy's users start it, and its value references by name."""
     description = fmpy.read_model_description(str(fmu_path(2)))
     references = {each.name: each.valueReference for each in description.modelVariables}
     fmu = FMU2Slave(
         guid=description.guid,
         modelIdentifier=description.coSimulation.modelIdentifier,
-        unzipDirectory=fmpy.extract(str(fmu_path(2)), folder),
+        unzipDirectory=fmpy.extract(str(fmu_path(2)), str(folder)),
     )
     fmu.instantiate()
     numbers = robot_parameters(scenario).by_name()
