@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab.scenario import Scenario
-from laglab.sides import robot_model
+from laglab.station_side import robot_model
 from laglab.summary import deviation
 from laglab.trials import run_trial
 from laglab_controller import ESTIMATORS, Replay, constant_delay, replay

@@ -11,8 +11,9 @@ from pathlib import Path
 from time import monotonic
 from typing import Any
 
+from laglab.robot_side import Setup, open_robot
 from laglab.scenario import Scenario
-from laglab.sides import Setup, open_robot, open_station, station_statistics
+from laglab.station_side import open_station, station_statistics
 from laglab_controller import StationError, run_station
 from laglab_fmu import FmuError
 from laglab_gateway import FileRecorder, GatewayError, Outcome, Patience

@@ -23,8 +23,9 @@ from laglab.processes import (
     started,
     station_process,
 )
+from laglab.robot_side import Setup, open_robot
 from laglab.scenario import Scenario
-from laglab.sides import Setup, open_robot, open_station, station_statistics
+from laglab.station_side import open_station, station_statistics
 from laglab_gateway import FileRecorder, Outcome, Patience
 
 Transport = Literal["inline", "udp", "serial"]

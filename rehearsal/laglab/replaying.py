@@ -13,7 +13,7 @@ from rich.table import Table
 from laglab.errors import ScenarioError
 from laglab.figure import empty_figure
 from laglab.scenario import Scenario
-from laglab.sides import station_config
+from laglab.station_side import station_config
 from laglab.summary import deviation
 from laglab_controller import ESTIMATORS, Heard, Shadow, shadow
 from laglab_gateway import Trace

@@ -5,8 +5,9 @@ from collections.abc import Callable
 import numpy as np
 
 from laglab.inline import InlineEndpoint
+from laglab.robot_side import open_gateway, serve
 from laglab.scenario import Scenario
-from laglab.sides import open_gateway, serve, station_config
+from laglab.station_side import station_config
 from laglab_controller import Controller, Station, StationConfig
 from laglab_gateway import NoRecorder, Patience, Trace, TraceRow
 

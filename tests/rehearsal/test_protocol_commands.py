@@ -10,8 +10,8 @@ from xml.etree import ElementTree
 
 import pytest
 
+from laglab.robot_side import shown_parameters
 from laglab.scenario import Scenario
-from laglab.sides import shown_parameters
 from laglab_protocol import (
     CommandLong,
     Endpoint,

@@ -23,8 +23,9 @@ from fmpy.fmi2 import FMU2Slave
 
 from laglab.errors import RunError
 from laglab.processes import Listening, Progress, started
+from laglab.robot_side import robot_parameters
 from laglab.scenario import Scenario
-from laglab.sides import robot_parameters, station_config
+from laglab.station_side import station_config
 from laglab_controller import Controller, Echo, Measured
 from laglab_fmu import fmu_path
 from laglab_gateway import TRACE_FILE, TraceRow

@@ -12,8 +12,8 @@ from laglab.extras import REHEARSING, require
 from laglab.options import on_scenario
 from laglab.rehearse import Ending, Transport, rehearse
 from laglab.report import results_table, warnings, write_results
+from laglab.robot_side import Setup
 from laglab.scenario import Scenario
-from laglab.sides import Setup
 from laglab_gateway import TRACE_FILE, Trace, TraceError, read_trace
 from laglab_protocol import EndReason
 

@@ -11,8 +11,9 @@ from rich.console import Console
 from laglab.commands.run import EXIT_CODES, KeyOption, PlantOption, progress_bar
 from laglab.extras import STEPPING, require
 from laglab.options import on_scenario
+from laglab.robot_side import Setup, open_robot
 from laglab.scenario import Scenario
-from laglab.sides import Setup, open_robot, open_station
+from laglab.station_side import open_station
 from laglab_controller import run_station
 from laglab_gateway import FileRecorder, NoRecorder, Patience
 from laglab_protocol import Endpoint, EndReason, open_endpoint, refuse_open_door
