@@ -1,6 +1,7 @@
 """mavsdk finds the robot, reads and sets parameters, arms it, sees it move."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -10,9 +11,10 @@ import pytest
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("rover")
-def test_mavsdk_finds_reads_sets_arms_and_sees_it_move(port: int) -> None:
+def test_mavsdk_finds_reads_sets_arms_and_sees_it_move(port: int, tmp_path: Path) -> None:
     done = subprocess.run(
         [sys.executable, Path(__file__).parent / "mavsdk_client.py", str(port)],
+        env=os.environ | {"TMPDIR": str(tmp_path)},  # it leaves a folder there
         capture_output=True,
         text=True,
         check=False,

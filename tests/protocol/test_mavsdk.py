@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import socket
 import subprocess
 import sys
@@ -50,12 +51,13 @@ def free_port() -> int:
 
 
 @pytest.fixture(scope="module")
-def peer() -> Iterator[Peer]:
+def peer(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Peer]:
     port, done, pipe = free_port(), threading.Event(), subprocess.PIPE
+    environment = os.environ | {"TMPDIR": str(tmp_path_factory.mktemp("mavsdk"))}
     command = [sys.executable, Path(__file__).parent / "mavsdk_peer.py", str(port)]
     with (
         open_endpoint(f"udpout://127.0.0.1:{port}") as endpoint,
-        subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True) as process,
+        subprocess.Popen(command, env=environment, stdin=pipe, stdout=pipe, text=True) as process,
     ):
         beating = threading.Thread(target=beat, args=(endpoint, done))
         beating.start()
