@@ -13,6 +13,7 @@ from laglab_controller.joining import Rest, observe, prior
 from laglab_controller.watch import StationReport, gain_warning, tick_times
 from laglab_protocol import (
     STATION_COMPONENT,
+    STATION_HEARTBEAT,
     STATION_SYSTEM,
     Codec,
     Command,
@@ -20,14 +21,11 @@ from laglab_protocol import (
     EndReason,
     Estimate,
     Frame,
-    Heartbeat,
     Measurement,
     Message,
     Tick,
     Timesync,
 )
-
-MAV_TYPE_GCS, MAV_AUTOPILOT_INVALID, MAV_STATE_ACTIVE, MAVLINK_VERSION = 6, 8, 4, 3
 
 
 class Station:
@@ -100,16 +98,7 @@ class Station:
 
     def heartbeat(self) -> bytes:
         """The frame that makes the station known to the robot."""
-        return self._sender.frame(
-            Heartbeat(
-                custom_mode=0,
-                type=MAV_TYPE_GCS,
-                autopilot=MAV_AUTOPILOT_INVALID,
-                base_mode=0,
-                system_status=MAV_STATE_ACTIVE,
-                mavlink_version=MAVLINK_VERSION,
-            )
-        )
+        return self._sender.frame(STATION_HEARTBEAT)
 
     def receive(self, data: bytes, datagram: bool) -> bytes:
         """What to send back for `data`, perhaps nothing; `datagram` says that it is a whole one."""

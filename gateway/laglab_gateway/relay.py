@@ -18,18 +18,17 @@ from laglab_protocol import (
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
     STATION_COMPONENT,
+    STATION_HEARTBEAT,
     STATION_SYSTEM,
     Codec,
     Command,
     End,
     EndReason,
     Frame,
-    Heartbeat,
     Measurement,
     Tick,
 )
 
-MAV_TYPE_GCS, MAV_AUTOPILOT_INVALID, MAV_STATE_ACTIVE, MAVLINK_VERSION = 6, 8, 4, 3
 UNKNOWN = (None, None, None)
 
 
@@ -76,15 +75,7 @@ class Relay(RobotSide):
 
     def greeting(self) -> bytes:
         """The frame that makes the robot begin its ticks."""
-        heartbeat = Heartbeat(
-            custom_mode=0,
-            type=MAV_TYPE_GCS,
-            autopilot=MAV_AUTOPILOT_INVALID,
-            base_mode=0,
-            system_status=MAV_STATE_ACTIVE,
-            mavlink_version=MAVLINK_VERSION,
-        )
-        return self._to_robot.frame(heartbeat)
+        return self._to_robot.frame(STATION_HEARTBEAT)
 
     def receive_from_robot(self, data: bytes, whole: bool) -> list[Frame]:
         """The robot's frames in these bytes. No frame goes on after `whole`."""

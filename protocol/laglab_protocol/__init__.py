@@ -33,6 +33,7 @@ from laglab_protocol.messages import (
 from laglab_protocol.receiver import Counters, Receiver
 from laglab_protocol.sender import Sender
 from laglab_protocol.standard import (
+    STATION_HEARTBEAT,
     Attitude,
     AutopilotVersion,
     CommandAck,
@@ -60,6 +61,7 @@ __all__ = [
     "ROBOT_COMPONENT",
     "ROBOT_SYSTEM",
     "STATION_COMPONENT",
+    "STATION_HEARTBEAT",
     "STATION_SYSTEM",
     "Attitude",
     "AutopilotVersion",

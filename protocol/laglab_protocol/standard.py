@@ -5,6 +5,8 @@ What they mean is told at https://mavlink.io/en/messages/common.html; units as t
 
 from typing import Any, NamedTuple
 
+from laglab_protocol.generated import laglab as mavlink
+
 
 class Heartbeat(NamedTuple):
     """Anybody, once a second: I am here, and of this kind."""
@@ -15,6 +17,17 @@ class Heartbeat(NamedTuple):
     base_mode: int
     system_status: int
     mavlink_version: int
+
+
+STATION_HEARTBEAT = Heartbeat(
+    custom_mode=0,
+    type=mavlink.MAV_TYPE_GCS,
+    autopilot=mavlink.MAV_AUTOPILOT_INVALID,
+    base_mode=0,
+    system_status=mavlink.MAV_STATE_ACTIVE,
+    mavlink_version=3,
+)
+"""How a remote station makes itself known to the robot."""
 
 
 class SysStatus(NamedTuple):

@@ -23,6 +23,7 @@ from laglab_protocol.messages import (
     Tick,
 )
 from laglab_protocol.standard import (
+    STATION_HEARTBEAT,
     AutopilotVersion,
     CommandAck,
     CommandLong,
@@ -34,7 +35,6 @@ from laglab_protocol.standard import (
 )
 
 NO_SUCH_COMMAND = 65_000
-STATION = Heartbeat(0, mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 4, 3)
 SOON = 0.25
 """[s] Within this time, as a median, a robot goes on after an answer."""
 
@@ -49,7 +49,7 @@ class RobotSession(Session):
     def connect(self) -> None:
         deadline = time.monotonic() + self.patience.appear
         while time.monotonic() < deadline:
-            self.send(STATION)
+            self.send(STATION_HEARTBEAT)
             if frame := self.listen(self.patience.refuse, _is_tick):
                 assert isinstance(frame.message, Tick)
                 self.tick = frame.message.tick
