@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import termios
 import tty
 from abc import ABC, abstractmethod
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import Self
 
 import serial
 
-from laglab_protocol.endpoints.waiting import readable, writable
+from laglab_protocol.endpoints.waiting import first_bytes, writable
 from laglab_protocol.errors import (
     FarEndGoneError,
     FarEndStalledError,
@@ -41,12 +42,13 @@ class _Tty(ABC):
         return
 
     def receive(self, timeout: float) -> bytes:
-        if not readable(self._descriptor, timeout):
-            return b""
+        return first_bytes(self._read, self._descriptor, timeout)
+
+    def _read(self) -> bytes | None:
         try:
             data = os.read(self._descriptor, READ_AT_MOST)
         except BlockingIOError:
-            return b""
+            return None
         except OSError as error:
             raise self._gone(error.strerror) from error
         if not data:
@@ -100,6 +102,7 @@ class SerialPort(_Tty):
             self._port = serial.Serial(device, baud, timeout=0, exclusive=True)
         except (serial.SerialException, OSError, ValueError) as error:
             raise _cannot_open(name, error) from error
+        _tell_silence_from_hanging_up(self._port.fileno())
         super().__init__(name, self._port.fileno())
 
     def close(self) -> None:
@@ -137,6 +140,13 @@ class Pty(_Tty):
         self._link = None
         os.close(self._descriptor)
         os.close(self._slave)
+
+
+def _tell_silence_from_hanging_up(descriptor: int) -> None:
+    """Pyserial's VMIN of 0 makes both a read of no bytes; with 1, silence is BlockingIOError."""
+    attributes = termios.tcgetattr(descriptor)
+    attributes[6][termios.VMIN] = 1
+    termios.tcsetattr(descriptor, termios.TCSANOW, attributes)
 
 
 def _make_way(link: Path) -> None:

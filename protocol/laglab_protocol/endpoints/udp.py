@@ -2,28 +2,23 @@
 
 import ipaddress
 import socket
-import struct
+from abc import ABC, abstractmethod
 from types import TracebackType
 from typing import Any, Self
 
-from laglab_protocol.endpoints.waiting import readable
+from laglab_protocol.endpoints.waiting import first_bytes
 from laglab_protocol.errors import EndpointError, NoSuchPortError, PortBusyError
 
 LARGEST_DATAGRAM = 65535
 
-KERNEL_TIMEOUT_FROM = 0.05
-"""Seconds. From here on the kernel's own receive timeout serves, which costs no extra call; it
-counts in its timer's ticks of up to 10 ms, so shorter waits are made by select."""
 
-
-class _Udp:
+class _Udp(ABC):
     datagrams = True
 
     def __init__(self, scheme: str, host: str, port: int) -> None:
         self._scheme = scheme
         family, self._address = _resolve(scheme, host, port)
         self._socket = socket.socket(family, socket.SOCK_DGRAM)
-        self._timeout = -1.0
 
     @property
     def name(self) -> str:
@@ -42,17 +37,12 @@ class _Udp:
     def accept_peer(self) -> None:
         return
 
-    def _wait(self, timeout: float) -> int:
-        """Get ready to wait: returns the flags for the receive call, or -1 after a timeout."""
-        if timeout < KERNEL_TIMEOUT_FROM:
-            ready = readable(self._socket.fileno(), timeout)
-            return socket.MSG_DONTWAIT if ready else -1
-        if timeout != self._timeout:
-            seconds, rest = divmod(timeout, 1.0)
-            value = struct.pack("ll", int(seconds), int(rest * 1e6))
-            self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, value)
-            self._timeout = timeout
-        return 0
+    def receive(self, timeout: float) -> bytes:
+        return first_bytes(self._read, self._socket.fileno(), timeout)
+
+    @abstractmethod
+    def _read(self) -> bytes | None:
+        """A datagram that is there already; None when there is none."""
 
     def __enter__(self) -> Self:
         return self
@@ -89,14 +79,11 @@ class UdpIn(_Udp):
                     f"send to {self._peer[0]}:{self._peer[1]} from", self.name, error
                 ) from (error)
 
-    def receive(self, timeout: float) -> bytes:
-        flags = self._wait(timeout)
-        if flags < 0:
-            return b""
+    def _read(self) -> bytes | None:
         try:
-            data, self._last_sender = self._socket.recvfrom(LARGEST_DATAGRAM, flags)
+            data, self._last_sender = self._socket.recvfrom(LARGEST_DATAGRAM, socket.MSG_DONTWAIT)
         except BlockingIOError:
-            return b""
+            return None
         return data
 
     def accept_peer(self) -> None:
@@ -131,16 +118,11 @@ class UdpOut(_Udp):
         except OSError as error:
             raise _cannot("send to", self.name, error) from error
 
-    def receive(self, timeout: float) -> bytes:
-        flags = self._wait(timeout)
-        while flags >= 0:
-            try:
-                return self._socket.recv(LARGEST_DATAGRAM, flags)
-            except ConnectionRefusedError:
-                continue  # an earlier datagram found nobody; the error is used up, so wait
-            except BlockingIOError:
-                break
-        return b""
+    def _read(self) -> bytes | None:
+        try:
+            return self._socket.recv(LARGEST_DATAGRAM, socket.MSG_DONTWAIT)
+        except (BlockingIOError, ConnectionRefusedError):
+            return None  # a refusal means that an earlier datagram found nobody; it is used up
 
 
 def _resolve(scheme: str, host: str, port: int) -> tuple[socket.AddressFamily, Any]:

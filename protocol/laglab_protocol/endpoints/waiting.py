@@ -1,19 +1,33 @@
-"""Waiting for a descriptor, exact to well below a millisecond."""
+"""Waiting for bytes without being late."""
 
+import os
 import select
+from collections.abc import Callable
 from time import monotonic
 
-POLLED = 3e-4
-"""[s] A sleeper is woken a tenth of a millisecond late or more, so the end of a wait is polled."""
+POLLED = 5e-4
+"""[s] Waking a sleeper takes a tenth of a millisecond, longer than the far end may take to answer:
+so the beginning of a wait is polled, and its end, in order to be in time for the deadline."""
 
 
-def readable(descriptor: int, timeout: float) -> bool:
-    """Whether there is something to read within `timeout` seconds."""
-    deadline = monotonic() + timeout
-    ready = bool(select.select([descriptor], [], [], max(timeout - POLLED, 0.0))[0])
-    while not ready and monotonic() < deadline:
-        ready = bool(select.select([descriptor], [], [], 0.0)[0])
-    return ready
+def first_bytes(read: Callable[[], bytes | None], descriptor: int, timeout: float) -> bytes:
+    """What `read` gives within `timeout` seconds, asked once at least; it gives None for not yet.
+
+    `descriptor` is readable when it would give more.
+    """
+    now = monotonic()
+    deadline = now + timeout
+    data = _poll(read, min(now + POLLED, deadline))
+    if data is None and timeout > POLLED:
+        select.select([descriptor], [], [], max(deadline - monotonic() - POLLED, 0.0))
+        data = _poll(read, deadline)
+    return data or b""
+
+
+def _poll(read: Callable[[], bytes | None], until: float) -> bytes | None:
+    while (data := read()) is None and monotonic() < until:
+        os.sched_yield()  # the far end may be waiting for this very processor
+    return data
 
 
 def writable(descriptor: int, timeout: float) -> bool:
