@@ -2,9 +2,9 @@
 
 One tick (the order is the specification's): `open_tick` samples the sensor and gives the frames
 for the station; `receive` takes the station's bytes; `settle` lets the commands that are due come
-into force and sets the plant going; `close_tick` says what happened. In lock-step `settle` waits
-for the answer to this tick, so that n = 0 means no delay; in real time it comes right after
-`open_tick`, so what arrives during a tick counts from the next one on.
+into force and sets the plant going; `close_tick` says what happened. `settle` comes right after
+`open_tick`, so what arrives during a tick counts from the next one on; only in lock-step with
+n = 0 it waits for the answer to this tick, so that n = 0 means no delay.
 """
 
 from collections.abc import Mapping
@@ -36,6 +36,11 @@ class Gateway(RobotSide):
         super().__init__(
             config, services or Services(standard_parameters(n, m, config.safety)), fates, codec
         )
+
+    @property
+    def immediate(self) -> bool:
+        """Whether the command of a tick takes force at that tick."""
+        return self._config.command_delay == 0
 
     def _begin_tick(self, tick: int) -> None:
         super()._begin_tick(tick)

@@ -32,8 +32,13 @@ def serve_lockstep(
     try:
         conversation.wait_for_station()
         while gateway.outcome is None:
-            _exchange(gateway, conversation)
-            gateway.settle()
+            conversation.send(gateway.open_tick())
+            if not gateway.immediate:
+                gateway.settle()  # while the station thinks
+            conversation.catch_up()
+            _await_answer(gateway, conversation)
+            if gateway.immediate:
+                gateway.settle()
             progress(conversation.finish_tick())
     except KeyboardInterrupt:
         gateway.outcome = Outcome(EndReason.INTERRUPTED, gateway.tick)
@@ -41,10 +46,8 @@ def serve_lockstep(
     return gateway.outcome
 
 
-def _exchange(gateway: Gateway, conversation: Conversation) -> None:
-    """Send this tick until it is answered; the station answers a repeat with the same."""
-    conversation.send(gateway.open_tick())
-    conversation.catch_up()
+def _await_answer(gateway: Gateway, conversation: Conversation) -> None:
+    """Send this tick again until it is answered; the station answers a repeat with the same."""
     while not conversation.listen_for(lambda: gateway.answered):
         if gateway.station_end is not None:
             return  # it has ended the run, and will not answer any more
