@@ -15,7 +15,7 @@ from laglab_controller.family import Kind, estimator_kind
 from laglab_controller.flight import Echo, Flight, hear, send, take_off
 from laglab_controller.law import STAND_STILL, Drive, Law, as_input
 from laglab_controller.model import Vector, constant
-from laglab_controller.motion import Motion, compose
+from laglab_controller.motion import Way, joined
 from laglab_controller.robot import RobotModel
 
 DIVERGED = 1000.0
@@ -87,6 +87,11 @@ class Controller:
         estimate = self._estimator.predict(estimate, self._applied(applied, drive))
         return Control(estimate, flight, drive)
 
+    def expect(self, control: Control, s: int) -> Control:
+        """The same, prepared for a measurement sampled at tick s, which is likely to come."""
+        estimate, flight, drive = control
+        return Control(self._estimator.expect(estimate, s), flight, drive)
+
     def answer(
         self, control: Control, measurements: Sequence[Measured], echoes: Sequence[Echo] = ()
     ) -> Control:
@@ -110,7 +115,7 @@ class Controller:
         """(29): where the robot will be when the command that is now made comes into force."""
         if not self.kind.predicts:
             return x
-        return np.array(compose(Motion(*x.tolist()), flight.in_flight.product)[:3])
+        return np.array(joined(Way(*x.tolist()), flight.ahead))
 
 
 def diverged(x: Vector) -> bool:

@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Generic, NamedTuple, TypeVar
 
 from laglab_controller import kalman
-from laglab_controller.estimator import Applied, Measured, by_sampling
+from laglab_controller.estimator import Applied, Estimator, Measured, by_sampling
 from laglab_controller.kalman import Belief, Compared, Innovation
 from laglab_controller.log import Log, append
 from laglab_controller.model import Matrix, Model, Vector
@@ -51,7 +51,7 @@ class DelayedState(Generic[W]):
 
 
 @dataclass(frozen=True)
-class DelayedEkf(Generic[W]):
+class DelayedEkf(Estimator[DelayedState[W]]):
     """The optimum (to first order) for measurements that come late, in any order, or never.
 
     Every z_s corrects the EKF at tick s, and what followed is replayed; so the answer is that of

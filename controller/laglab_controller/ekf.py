@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from laglab_controller import kalman
-from laglab_controller.estimator import Applied, Measured, by_sampling
+from laglab_controller.estimator import Applied, Estimator, Measured, by_sampling
 from laglab_controller.kalman import Belief, Compared, Innovation
 from laglab_controller.model import Matrix, Model, Vector
 
@@ -21,7 +21,7 @@ class EkfState(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Ekf:
+class Ekf(Estimator[EkfState]):
     """(27) and (8), blind to the delay: z_s is taken for z_k. With m = 0 it is right."""
 
     model: Model

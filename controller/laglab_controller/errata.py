@@ -12,7 +12,7 @@ from laglab_controller.estimator import Estimator
 from laglab_controller.flight import Flight
 from laglab_controller.law import Drive, as_input
 from laglab_controller.model import Matrix, Vector, symmetric
-from laglab_controller.motion import Motion, compose
+from laglab_controller.motion import Way, joined
 from laglab_controller.popf import Popf
 from laglab_controller.robot import RobotModel
 
@@ -91,8 +91,8 @@ class PrintedController(Controller):
         """(29), or as printed: u_{k+n-1} is not sent yet, so the last command there is, n times."""
         if Erratum.EXTRAPOLATION not in self.errata:
             return super()._at_arrival(x, flight, drive)
-        step = self.config.model.motion(as_input(drive))
-        pose = Motion(*x.tolist())
+        step = self.config.model.way(as_input(drive))
+        pose = Way(*x.tolist())
         for _ in range(self.config.command_delay):
-            pose = compose(pose, step)
-        return np.array(pose[:3])
+            pose = joined(pose, step)
+        return np.array(pose)

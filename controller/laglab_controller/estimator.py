@@ -84,6 +84,13 @@ class Estimator(Protocol[S]):
         """
         ...
 
+    def expect(self, state: S, s: int) -> S:
+        """The same, prepared for a measurement sampled at `s`: its correction will take less time.
+
+        Any other may come as well. Nothing can be prepared by those that say nothing else.
+        """
+        return state
+
     def innovation(self, state: S) -> Innovation | None:
         """Of the newest measurement used at this tick, as the estimator saw it; None without."""
         ...

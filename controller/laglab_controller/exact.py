@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from laglab_controller.estimator import Applied, Measured, by_sampling
+from laglab_controller.estimator import Applied, Estimator, Measured, by_sampling
 from laglab_controller.kalman import Belief, Compared, Innovation, gain, innovation
 from laglab_controller.model import Matrix, Model, Vector, symmetric
 
@@ -35,7 +35,7 @@ class ExactState(NamedTuple):
 
 
 @dataclass(frozen=True)
-class PopfExact:
+class PopfExact(Estimator[ExactState]):
     """(11) with the best gain for it: (19) and (20) take the noise of corrections that overlap for
     white, here their covariances are carried along instead.
 

@@ -9,7 +9,7 @@ import numpy as np
 from laglab_controller.estimator import Applied
 from laglab_controller.log import Log, append, newest_first
 from laglab_controller.model import Vector
-from laglab_controller.motion import STILL, Motion, compose
+from laglab_controller.motion import NOWHERE, Way, joined
 from laglab_controller.robot import RobotModel
 from laglab_controller.sliding import SlidingProduct
 
@@ -45,21 +45,24 @@ class Flight(NamedTuple):
     """The last delays that were echoed."""
     known: int
     """Up to this tick it may be known what was in force; after it, it is believed."""
-    in_flight: SlidingProduct[Vector, Motion]
+    in_flight: SlidingProduct[Vector, Way]
     """u_{tick-n} ... u_{tick-1}: standing still for what was sent before tick 0."""
+    ahead: Way
+    """Where they lead."""
 
 
 def take_off(robot: RobotModel, command_delay: int) -> Flight:
     """Before the first command."""
-    return _rebuilt(robot, Flight(0, None, command_delay, (), -1, SlidingProduct(compose, STILL)))
+    nothing: SlidingProduct[Vector, Way] = SlidingProduct(joined, NOWHERE)
+    return _rebuilt(robot, Flight(0, None, command_delay, (), -1, nothing, NOWHERE))
 
 
 def send(robot: RobotModel, flight: Flight, u: Vector) -> tuple[Flight, Vector]:
     """With the command of this tick on its way; and the one that is in force until the next."""
-    tick, sent, n, recent, known, in_flight = flight
+    tick, sent, n, recent, known, in_flight, _ = flight
     sent = append(sent, u, MEMORY)
-    applied, in_flight = in_flight.push(u, robot.motion(u)).pop()
-    return Flight(tick + 1, sent, n, recent, known, in_flight), applied
+    applied, in_flight = in_flight.push(u, robot.way(u)).pop()
+    return Flight(tick + 1, sent, n, recent, known, in_flight, in_flight.product), applied
 
 
 def hear(robot: RobotModel, flight: Flight, echoes: Sequence[Echo]) -> tuple[Flight, list[Applied]]:
@@ -69,15 +72,15 @@ def hear(robot: RobotModel, flight: Flight, echoes: Sequence[Echo]) -> tuple[Fli
     """
     if not echoes:
         return flight, []
+    tick, sent, n, recent, known, in_flight, ahead = flight
     inputs = [Applied(echo.tick, echo.u) for echo in echoes]
-    known = max(flight.known, *(echo.tick for echo in echoes))
-    seen = [delay for echo in echoes if (delay := _delay(echo)) is not None]
-    recent = (*flight.recent, *seen)[-RECENT:]
-    n = sorted(recent)[len(recent) // 2] if recent else flight.command_delay
-    flight = flight._replace(recent=recent, known=known)
-    if n == flight.command_delay:
+    known = max(known, *[echo.tick for echo in echoes])
+    recent = (*recent, *[delay for echo in echoes if (delay := _delay(echo)) is not None])[-RECENT:]
+    seen = sorted(recent)[len(recent) // 2] if recent else n
+    flight = Flight(tick, sent, seen, recent, known, in_flight, ahead)
+    if seen == n:
         return flight, inputs
-    flight = _rebuilt(robot, flight._replace(command_delay=n))
+    flight = _rebuilt(robot, flight)
     return flight, inputs + _believed(flight, since=known + 1)
 
 
@@ -91,8 +94,8 @@ def _delay(echo: Echo) -> int | None:
 def _rebuilt(robot: RobotModel, flight: Flight) -> Flight:
     in_flight = flight.in_flight.emptied()
     for u in _sent_since(flight, flight.tick - flight.command_delay):
-        in_flight = in_flight.push(u, robot.motion(u))
-    return flight._replace(in_flight=in_flight)
+        in_flight = in_flight.push(u, robot.way(u))
+    return flight._replace(in_flight=in_flight, ahead=in_flight.product)
 
 
 def _believed(flight: Flight, since: int) -> list[Applied]:

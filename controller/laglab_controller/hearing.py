@@ -12,20 +12,16 @@ from laglab_protocol import Measurement
 def measured(messages: Sequence[Measurement], first: int, tick: int) -> list[Measured]:
     """The poses measured from tick `first` to the present `tick`; no others make sense."""
     return [
-        Measured(message.tick - first, np.array(message[:3]))
-        for message in messages
-        if first <= message.tick <= tick
+        Measured(sampled - first, np.array((x, y, theta)))
+        for x, y, theta, _, _, sampled, _ in messages
+        if first <= sampled <= tick
     ]
 
 
 def echoes(messages: Sequence[Measurement], first: int, tick: int) -> list[Echo]:
     """The commands that were in force just before each was sampled."""
     return [
-        Echo(
-            message.tick - first - 1,
-            np.array((message.v, message.omega)),
-            message.command_tick - first if message.command_tick >= first else None,
-        )
-        for message in messages
-        if first < message.tick <= tick
+        Echo(sampled - first - 1, np.array((v, omega)), made - first if made >= first else None)
+        for _, _, _, v, omega, sampled, made in messages
+        if first < sampled <= tick
     ]

@@ -28,6 +28,26 @@ class Motion(NamedTuple):
 STILL = Motion(0.0, 0.0, 0.0)
 
 
+class Way(NamedTuple):
+    """Where a rigid motion leads, in the frame of its start; nothing of how surely."""
+
+    x: float
+    y: float
+    theta: float
+
+
+NOWHERE = Way(0.0, 0.0, 0.0)
+
+
+def joined(first: Way, second: Way) -> Way:
+    """x_a . x_b, as in `compose`."""
+    x, y, theta = first
+    along, across, turn = second
+    c, s = direction(theta)
+    dx, dy = c * along - s * across, s * along + c * across
+    return Way(x + dx, y + dy, theta + turn)
+
+
 def compose(first: Motion, second: Motion) -> Motion:
     """x_a . x_b: `second` starts where `first` ends.
 

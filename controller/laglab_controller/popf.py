@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from laglab_controller.estimator import Applied, Measured, by_sampling
+from laglab_controller.estimator import Applied, Estimator, Measured, by_sampling
 from laglab_controller.history import History
 from laglab_controller.kalman import Belief, Compared, Innovation, gain, innovation
 from laglab_controller.model import Matrix, Model, Vector, identity, symmetric
@@ -17,6 +17,20 @@ class Step(NamedTuple):
     tick: int
     prior: Belief
     factor: Matrix
+
+
+class Correction(NamedTuple):
+    """All of (28) for a measurement of tick s that does not depend on its value."""
+
+    s: int
+    prior: Belief
+    """x^-_s and P^-_s."""
+    K: Matrix
+    P: Matrix
+    """From here on the state's fields as they are after it."""
+    left: Matrix
+    past: History[Step, Matrix]
+    used: int
 
 
 class PopfState(NamedTuple):
@@ -34,11 +48,13 @@ class PopfState(NamedTuple):
     own factor."""
     used: int
     """Bit i is set when z_{k-i} has been used."""
-    compared: Compared | None
+    compared: Compared | None = None
+    expected: Correction | None = None
+    """By the measurement that is expected at this tick."""
 
 
 @dataclass(frozen=True)
-class Popf:
+class Popf(Estimator[PopfState]):
     """The paper's filter with (28) as (11) derives it.
 
     `innovation_at_k` takes h(x^-_k) for h(x^-_s), and `covariance_at_k` H_k for H_s, as (28) prints
@@ -59,42 +75,62 @@ class Popf:
         I = identity(len(x))  # noqa: E741
         window: SlidingProduct[Step, Matrix] = SlidingProduct(_compose, I)
         past = History(window, since=0, older=None, memory=self.memory)
-        return PopfState(0, x, P, Belief(x, P), I, past, used=0, compared=None)
+        return PopfState(0, x, P, Belief(x, P), I, past, used=0)
 
     def predict(self, state: PopfState, u: Vector) -> PopfState:
         """(27), and one more factor for (21)."""
-        tick, x, P, prior, left, past, used, _ = state
+        tick, x, P, prior, left, past, used, *_ = state
         factor = self.model.A(x, u).dot(left)
         past = past.push(tick, Step(tick, prior, factor), factor)
         used = used << 1 & (1 << self.memory) - 1
         prior = Belief(*self.model.predict(x, P, u))
-        return PopfState(tick + 1, *prior, prior, identity(len(x)), past, used, None)
+        return PopfState(tick + 1, *prior, prior, identity(len(x)), past, used)
 
     def correct(
         self, state: PopfState, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
     ) -> PopfState:
         """(28) for every measurement that is not a repeat and not too old."""
         for s, z in by_sampling(measurements, state.tick):
-            lateness = state.tick - s
-            if lateness < self.memory and not state.used >> lateness & 1:
+            if self._useful(state, s):
                 state = self._correct(state, s, z)
         return state
 
+    def expect(self, state: PopfState, s: int) -> PopfState:
+        """With the gain for s, and the covariance after it: (21) to (24)."""
+        if not (0 <= s <= state.tick and self._useful(state, s)):
+            return state
+        tick, x, P, prior, left, past, used, *_ = state
+        correction = self._correction(state, s)
+        return PopfState(tick, x, P, prior, left, past, used, expected=correction)
+
+    def _useful(self, state: PopfState, s: int) -> bool:
+        lateness = state.tick - s
+        return lateness < self.memory and not state.used >> lateness & 1
+
     def _correct(self, state: PopfState, s: int, z: Vector) -> PopfState:
-        tick, x, P, prior, left, past, used, _ = state
+        """(11)."""
+        tick, x, _, prior, *_, correction = state
+        if correction is None or correction.s != s:
+            correction = self._correction(state, s)
+        _, prior_s, K, P, left, past, used = correction
+        expected = self.model.h(prior.x if self.innovation_at_k else prior_s.x)
+        x = x + K.dot(self.model.innovation(z, expected))
+        return PopfState(tick, x, P, prior, left, past, used, Compared(prior_s, z))
+
+    def _correction(self, state: PopfState, s: int) -> Correction:
+        tick, _, P, prior, left, past, used, *_ = state
         past = past.split(at=min(s, tick - 1))
-        (x_s, P_s), M = (prior, left) if s == tick else _prior_and_M(past, s, left)
-        model, H = self.model, self.model.H(x_s)
+        prior_s, M = (prior, left) if s == tick else _prior_and_M(past, s, left)
+        (x_s, P_s), model = prior_s, self.model
+        H = model.H(x_s)
         PHt = P_s.dot(H.T)
-        K = gain(M.dot(PHt), H.dot(PHt) + model.measurement_noise(x_s))  # (24)
-        expected = model.h(prior.x if self.innovation_at_k else x_s)
-        x = x + K.dot(model.innovation(z, expected))  # (11)
+        cross = M.dot(PHt)
+        K = gain(cross, H.dot(PHt) + model.measurement_noise(x_s))  # (24)
         H_k = model.H(prior.x)
-        seen = H_k.dot(P_s) if self.covariance_at_k else PHt.T
-        P = symmetric(P - K.dot(seen).dot(M.T))  # (23)
+        seen = M.dot(P_s).dot(H_k.T) if self.covariance_at_k else cross
+        P = symmetric(P - K.dot(seen.T))  # (23)
         left = left - K.dot(H_k).dot(left)
-        used |= 1 << tick - s
-        return PopfState(tick, x, P, prior, left, past, used, Compared(Belief(x_s, P_s), z))
+        return Correction(s, prior_s, K, P, left, past, used | 1 << tick - s)
 
     def innovation(self, state: PopfState) -> Innovation | None:
         """z_s - h(x^-_s)."""

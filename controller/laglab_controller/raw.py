@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from laglab_controller.estimator import Applied, Measured, by_sampling
+from laglab_controller.estimator import Applied, Estimator, Measured, by_sampling
 from laglab_controller.kalman import Innovation
 from laglab_controller.model import Matrix, Vector
 
@@ -21,7 +21,7 @@ class RawState(NamedTuple):
         return
 
 
-class Raw:
+class Raw(Estimator[RawState]):
     """Takes the newest measurement for the state, and predicts nothing."""
 
     def start(self, x: Vector, P: Matrix) -> RawState:

@@ -81,6 +81,11 @@ class Rewinding(Generic[S]):
         inner = self.estimator.correct(state.state, measurements)
         return RewindingState(inner, (*state.arrived, *measurements), state.history)
 
+    def expect(self, state: RewindingState[S], s: int) -> RewindingState[S]:
+        """The estimator's own."""
+        inner, arrived, history = state
+        return RewindingState(self.estimator.expect(inner, s), arrived, history)
+
     def innovation(self, state: RewindingState[S]) -> Innovation | None:
         """The estimator's own."""
         return self.estimator.innovation(state.state)
@@ -89,7 +94,8 @@ class Rewinding(Generic[S]):
         self, state: RewindingState[S], known: Mapping[int, Vector]
     ) -> RewindingState[S]:
         """Nothing is run again while all is as it was believed."""
-        history = state.history.split(max(known))
+        inner, arrived, history = state
+        history = history.split(max(known))
         oldest, past, wrong = min(known), [], 0
         for then in history.backwards():
             past.append(then)
@@ -98,7 +104,7 @@ class Rewinding(Generic[S]):
                 wrong = len(past)
             if then.tick <= oldest:
                 break
-        state = state._replace(history=history)
+        state = RewindingState(inner, arrived, history)
         return self._again(state, past[:wrong], known) if wrong else state
 
     def _again(

@@ -7,7 +7,7 @@ import numpy as np
 
 from laglab_controller.angle import direction, wrap
 from laglab_controller.model import Matrix, Vector, constant, identity
-from laglab_controller.motion import Motion, moved
+from laglab_controller.motion import Motion, Way, moved
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +52,11 @@ class RobotModel:
         """One tick of (3): g_k = (Ts v, 0, Ts omega), with W Q W^T as seen from the robot."""
         v, omega = u.tolist()
         return Motion(self.sample_time * v, 0.0, self.sample_time * omega, *self._noise)
+
+    def way(self, u: Vector) -> Way:
+        """Where one tick of (3) leads."""
+        v, omega = u.tolist()
+        return Way(self.sample_time * v, 0.0, self.sample_time * omega)
 
     def predict(self, x: Vector, P: Matrix, u: Vector) -> tuple[Vector, Matrix]:
         """(27), all in one: A P A^T + W Q W^T is how the covariance of a motion composes."""

@@ -66,6 +66,8 @@ class Station:
         self._measurement_delay: int | None = None
         self._times = array("q")
         self._warning: str | None = None
+        self._latest: int | None = None
+        """How late the latest measurement of this tick was; None when that has been judged."""
 
     @property
     def outcome(self) -> End | None:
@@ -85,6 +87,7 @@ class Station:
     @property
     def warning(self) -> str | None:
         """What the station has to warn of; None while there is nothing."""
+        self._judge_gain()
         return self._warning
 
     def report(self) -> StationReport:
@@ -93,7 +96,7 @@ class Station:
             self._control.flight.command_delay,
             self._measurement_delay,
             tick_times(self._times),
-            warnings=(self._warning,) if self._warning else (),
+            warnings=(self.warning,) if self.warning else (),
         )
 
     def heartbeat(self) -> bytes:
@@ -108,10 +111,14 @@ class Station:
         return b"".join(self._hear(frame) for frame in frames)
 
     def look_ahead(self) -> None:
-        """Predict the next tick now, while the robot is busy with the answer to this one."""
+        """Do now, while the robot is busy with the answer, what the next one would wait for."""
+        self._judge_gain()
         under_way = self._tick is not None and self._joining is None and self._outcome is None
         if under_way and self._ahead is None:
             self._ahead = self._controller.advance(self._control)
+            if self._measurement_delay is not None:
+                due = self._ahead.flight.tick - self._measurement_delay
+                self._ahead = self._controller.expect(self._ahead, due)
 
     def end(self, reason: EndReason) -> bytes:
         """End the run from this side: the frame to send."""
@@ -196,6 +203,7 @@ class Station:
 
     def _step(self, tick: int, measurements: list[Measurement]) -> None:
         """On to `tick`; over ticks that were lost on the way the robot held the last command."""
+        self._judge_gain()
         control = self._control
         for _ in range(0 if self._tick is None else tick - self._tick):
             control = self._ahead or self._controller.advance(control)
@@ -207,9 +215,13 @@ class Station:
         self._control = self._controller.answer(control, arrived, told)
         self._tick = tick
         self._answer = self._messages(tick, self._control)
-        if arrived and self._warning is None:
-            late = max(tick - self._first - measurement.tick for measurement in arrived)
-            self._warning = gain_warning(self._control.estimate, tick, late)
+        if arrived:
+            self._latest = tick - self._first - min(s for s, _ in arrived)
+
+    def _judge_gain(self) -> None:
+        if self._latest is not None and self._warning is None:
+            self._warning = gain_warning(self._control.estimate, self._tick or 0, self._latest)
+        self._latest = None
 
     def _messages(self, tick: int, control: Control) -> list[Message]:
         estimates = _estimate(tick, control.estimate)

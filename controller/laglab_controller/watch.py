@@ -51,7 +51,7 @@ def delay_limit(m: int) -> float:
 def largest_gain(state: State) -> float | None:
     """The highest gain of a component on its own innovation in popf's last correction."""
     inner: Any = state.state if isinstance(state, RewindingState) else state
-    return 1.0 - float(inner.left.diagonal().min()) if isinstance(inner, PopfState) else None
+    return 1.0 - min(inner.left.diagonal().tolist()) if isinstance(inner, PopfState) else None
 
 
 def gain_warning(state: State, tick: int, m: int) -> str | None:
