@@ -13,6 +13,7 @@ def wrap(angle: float) -> float:
 
 def direction(angle: float) -> tuple[float, float]:
     """Cosine and sine; NaN when the angle is not finite."""
-    if not math.isfinite(angle):
+    try:
+        return math.cos(angle), math.sin(angle)
+    except ValueError:
         return math.nan, math.nan
-    return math.cos(angle), math.sin(angle)

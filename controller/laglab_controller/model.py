@@ -88,7 +88,7 @@ class NonlinearModel:
 
 def symmetric(P: Matrix) -> Matrix:
     """(P + P^T)/2: rounding leaves a covariance a little lopsided."""
-    return (P + P.T) * 0.5
+    return (P + P.T.copy()) * 0.5  # copied, for two arrays of one order are added twice as fast
 
 
 def constant(values: ArrayLike, shape: tuple[int, ...], name: str) -> NDArray[np.float64]:

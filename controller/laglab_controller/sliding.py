@@ -53,7 +53,8 @@ class SlidingProduct(Generic[Item, Product]):
         """With a newest item."""
         back = self._back
         product = factor if back is None else self._compose(back.product, factor)
-        return self._with(self._front, Cell(item, factor, product, back))
+        cell = Cell(item, factor, product, back)
+        return type(self)(self._compose, self.identity, self._front, cell)
 
     def pop(self) -> tuple[Item, Self]:
         """The oldest item, and the queue without it. Raises IndexError when the queue is empty."""
@@ -62,11 +63,11 @@ class SlidingProduct(Generic[Item, Product]):
             front, back = self._turned(), None
         if front is None:
             raise IndexError("the window is empty")
-        return front.item, self._with(front.below, back)
+        return front.item, type(self)(self._compose, self.identity, front.below, back)
 
     def emptied(self) -> Self:
         """A new one for the same kind of products."""
-        return self._with(None, None)
+        return type(self)(self._compose, self.identity)
 
     def __iter__(self) -> Iterator[Item]:
         """The items, oldest first."""
@@ -74,9 +75,6 @@ class SlidingProduct(Generic[Item, Product]):
             yield cell.item
         for cell in reversed(list(_walk(self._back))):
             yield cell.item
-
-    def _with(self, front: Cell[Item, Product] | None, back: Cell[Item, Product] | None) -> Self:
-        return type(self)(self._compose, self.identity, front, back)
 
     def _turned(self) -> Cell[Item, Product] | None:
         front: Cell[Item, Product] | None = None

@@ -108,7 +108,7 @@ class Station:
         frames = self._receiver.receive(data)
         if datagram:
             frames += self._receiver.end_datagram()
-        return b"".join(self._hear(frame) for frame in frames)
+        return b"".join([self._hear(frame) for frame in frames])
 
     def look_ahead(self) -> None:
         """Do now, while the robot is busy with the answer, what the next one would wait for."""
@@ -199,7 +199,7 @@ class Station:
         return self._robot
 
     def _framed(self) -> bytes:
-        return b"".join(self._sender.frame(message) for message in self._answer)
+        return b"".join([self._sender.frame(message) for message in self._answer])
 
     def _step(self, tick: int, measurements: list[Measurement]) -> None:
         """On to `tick`; over ticks that were lost on the way the robot held the last command."""

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple, final
 
 from fastcrc import crc16
 
-from laglab_protocol.layout import LAYOUT_OF_ID, LAYOUT_OF_TYPE, layout_of
+from laglab_protocol.layout import LAYOUT_OF_ID, Layout, layout_of
 from laglab_protocol.messages import Message
 
 START = 0xFD
@@ -32,6 +32,7 @@ _OPENINGS = {
     length + 8: (bytes([START, length]), _crc(bytes([length]))) for length in range(1, 256)
 }
 """By the length of that body: the first two bytes of the frame, and the CRC of the second."""
+_pack_header = struct.Struct("<BBBBB3s").pack
 _unpack_header = struct.Struct("<xBBxBBBI").unpack_from  # one byte beyond the id: masked off
 
 
@@ -72,12 +73,21 @@ def encode(message: Message, system: int, component: int, sequence: int, flags: 
 
     Raises DialectError for a class that is no message, struct.error for a value out of range.
     """
-    layout = LAYOUT_OF_TYPE.get(type(message)) or layout_of(message)
-    body = layout.pack(flags, 0, sequence, system, component, layout.id_bytes, *message)
+    layout = layout_of(message)
+    head = header(layout, system, component, sequence, flags)
+    return enclose(head + layout.pack(*message), layout.crc_extra)
+
+
+def header(layout: Layout, system: int, component: int, sequence: int, flags: int) -> bytes:
+    """What stands between the length and the payload."""
+    return _pack_header(flags, 0, sequence, system, component, layout.id_bytes)
+
+
+def enclose(body: bytes, crc_extra: bytes) -> bytes:
+    """The frame whose header and untruncated payload are `body`."""
     body = body.rstrip(b"\0").ljust(_SHORTEST_BODY, b"\0")
-    opening, crc_of_length = _OPENINGS[len(body)]
-    crc = _crc(layout.crc_extra, _crc(body, crc_of_length))
-    return opening + body + crc.to_bytes(2, "little")
+    opening, crc = _OPENINGS[len(body)]
+    return opening + body + _crc(body + crc_extra, crc).to_bytes(2, "little")
 
 
 def decode(buffer: bytes, start: int, signed_too: bool = True) -> Frame | Refusal:
@@ -102,7 +112,7 @@ def decode(buffer: bytes, start: int, signed_too: bool = True) -> Frame | Refusa
     stop = end + (CRC_SIZE + SIGNATURE_SIZE if flags else CRC_SIZE)
     if size < stop:
         return Refusal.INCOMPLETE
-    crc = _crc(layout.crc_extra, _crc(buffer[start + 1 : end]))
+    crc = _crc(buffer[start + 1 : end] + layout.crc_extra)
     if crc != buffer[end] | buffer[end + 1] << 8:
         return Refusal.BAD_CRC
     if length >= layout.size:

@@ -15,9 +15,8 @@ from laglab_protocol.messages import Message, message_type
 class Layout:
     """One message, and how its fields lie on the wire.
 
-    `pack(flags, compatibility, sequence, system, component, id_bytes, *fields)` gives the frame
-    from its third byte to the end of its payload, untruncated: one struct is faster than two.
-    `unpack(buffer, start)` reads the fields from the `size` bytes of a payload.
+    `pack(*fields)` gives the payload, untruncated; `unpack(buffer, start)` reads the fields from
+    the `size` bytes of one.
     """
 
     id: int
@@ -34,7 +33,6 @@ def _layout(number: int) -> Layout:
     generated = dialect.mavlink_map[number]
     kind = message_type(generated.msgname)
     fields: struct.Struct = generated.unpacker
-    whole = struct.Struct("<BBBBB3s" + fields.format.removeprefix("<"))
     lengths: list[int] = generated.array_lengths  # in wire order; 0 for a scalar
     return Layout(
         id=number,
@@ -43,19 +41,19 @@ def _layout(number: int) -> Layout:
         size=fields.size,
         crc_extra=bytes([generated.crc_extra]),
         id_bytes=number.to_bytes(3, "little"),
-        pack=partial(_pack_arrays, whole) if any(lengths) else whole.pack,
+        pack=partial(_pack_arrays, fields) if any(lengths) else fields.pack,
         unpack=partial(_unpack_arrays, fields, lengths) if any(lengths) else fields.unpack_from,
     )
 
 
-def _pack_arrays(whole: struct.Struct, *values: Any) -> bytes:
+def _pack_arrays(fields: struct.Struct, *values: Any) -> bytes:
     flat: list[Any] = []
     for value in values:
         if isinstance(value, tuple | list):
             flat.extend(value)
         else:
             flat.append(value)
-    return whole.pack(*flat)
+    return fields.pack(*flat)
 
 
 def _unpack_arrays(

@@ -1,4 +1,4 @@
-"""The conformance kit passes our own controller, over UDP and over a serial line."""
+"""The conformance kit passes our own controller, over UDP and a serial line, signed and not."""
 
 import threading
 from contextlib import ExitStack
@@ -7,13 +7,24 @@ from pathlib import Path
 import pytest
 
 from laglab_controller import Station, StationConfig, run_station
-from laglab_protocol import Endpoint, open_endpoint
+from laglab_protocol import (
+    STATION_COMPONENT,
+    STATION_SYSTEM,
+    Codec,
+    Endpoint,
+    make_key,
+    open_endpoint,
+)
 from laglab_protocol.conform import conform
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("signed", [False, True], ids=["unsigned", "signed"])
 @pytest.mark.parametrize("line", ["udp", "serial"])
-def test_our_controller_conforms(tmp_path: Path, line: str) -> None:
+def test_our_controller_conforms(tmp_path: Path, line: str, signed: bool) -> None:
+    key_file = tmp_path / "key" if signed else None
+    if key_file:
+        make_key(key_file)
     with ExitStack() as stack:
         if line == "udp":
             with open_endpoint("udpin://:0") as free:
@@ -22,15 +33,16 @@ def test_our_controller_conforms(tmp_path: Path, line: str) -> None:
         else:
             endpoint = stack.enter_context(open_endpoint(f"pty://{tmp_path / 'station'}"))
             url = f"serial://{tmp_path / 'station'}:57600"
-        station = threading.Thread(target=run, args=(endpoint,))
+        station = threading.Thread(target=run, args=(endpoint, key_file))
         station.start()
         try:
-            report = conform(url, "controller")
+            report = conform(url, "controller", key_file)
         finally:
             station.join()
 
     assert report.failed == [], report.table()
 
 
-def run(endpoint: Endpoint) -> None:
-    run_station(Station(StationConfig(estimator="delayed-ekf")), endpoint)
+def run(endpoint: Endpoint, key_file: Path | None) -> None:
+    with Codec(STATION_SYSTEM, STATION_COMPONENT, key_file) as codec:
+        run_station(Station(StationConfig(estimator="delayed-ekf"), codec=codec), endpoint)

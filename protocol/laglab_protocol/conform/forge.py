@@ -32,7 +32,7 @@ class Forged:
     ) -> Self:
         """The usual frame of `message`, signed if there is a signer."""
         layout = layout_of(message)
-        whole = layout.pack(0, 0, 0, 0, 0, layout.id_bytes, *message)[8:]
+        whole = layout.pack(*message)
         payload = whole.rstrip(b"\0") or b"\0"
         flags = SIGNED if signer else 0
         return cls(

@@ -17,9 +17,7 @@ app = typer.Typer(help="Ratios, measured side by side in one run.", no_args_is_h
 
 @app.command("loop")
 def bench_loop(
-    rounds: Annotated[
-        int, typer.Option(min=1, help="Each way is measured so many times; medians are shown.")
-    ] = 5,
+    rounds: Annotated[int, typer.Option(min=1, help="Each way is measured so many times.")] = 9,
     ticks: Annotated[int, typer.Option(min=100, help="Ticks of each measurement.")] = 2000,
     realtime: Annotated[float, typer.Option(min=1.0, help="Seconds of real-time pacing.")] = 5.0,
     link: Annotated[Link | None, typer.Option(help="Only over this one.")] = None,
