@@ -1,6 +1,7 @@
 """The station's side of the link without I/O: the robot's bytes in, the answer's bytes out."""
 
 from array import array
+from collections import deque
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -8,6 +9,7 @@ import numpy as np
 
 from laglab_controller.controller import Control, Controller, StationConfig, diverged
 from laglab_controller.estimator import State
+from laglab_controller.flight import MEMORY
 from laglab_controller.hearing import echoes, measured
 from laglab_controller.joining import Rest, observe, prior
 from laglab_controller.watch import StationReport, gain_warning, tick_times
@@ -15,6 +17,7 @@ from laglab_protocol import (
     STATION_COMPONENT,
     STATION_HEARTBEAT,
     STATION_SYSTEM,
+    UNANNOUNCED,
     Codec,
     Command,
     End,
@@ -27,6 +30,9 @@ from laglab_protocol import (
     Timesync,
 )
 
+LONGEST_GAP = MEMORY
+"""Ticks without a word, after which nobody knows what the robot did meanwhile."""
+
 
 class Station:
     """Answers each tick of the robot once with ESTIMATE (unless `raw`) and COMMAND.
@@ -34,8 +40,9 @@ class Station:
     A repeated tick gets the same answer and changes nothing. A tick whose measurements did not all
     arrive gets none: the robot will repeat it. Everything else that arrives is passed over, and so
     is every other sender once a robot was heard. A robot first heard at tick 0 starts where the
-    station was told; one that is already under way is taken over from a standstill (`joining`),
-    and the tick at which its pose is known is tick 0 of section 3.
+    station was told; one that is already under way, or was not heard for LONGEST_GAP ticks, is
+    taken over from a standstill (`joining`), and the tick at which its pose is known is tick 0 of
+    section 3.
     """
 
     def __init__(
@@ -54,7 +61,7 @@ class Station:
         self._joining: Rest | None = None
         self._sender, self._receiver = codec.sender, codec.receiver
         self._robot: tuple[int, int] | None = None
-        self._measurements: list[Measurement] = []
+        self._measurements: deque[Measurement] = deque(maxlen=UNANNOUNCED)
         self._first = 0
         self._control = self._controller.start()
         self._ahead: Control | None = None
@@ -150,19 +157,24 @@ class Station:
         return self._sender.frame(end)
 
     def _hear_tick(self, message: Tick) -> bytes:
-        measurements, self._measurements = self._measurements, []
+        measurements = list(self._measurements)
+        self._measurements.clear()
         if len(measurements) != message.measurements:
             return b""
-        if self._tick is None:
-            self._first = message.tick
-            under_way = message.tick > 0 and self._controller.kind.predicts
-            self._joining = Rest() if under_way else None
+        if self._tick is None or message.tick - self._tick > LONGEST_GAP:
+            self._meet(message.tick)
         if message.tick == self._tick:
             return self._framed()
         if self._outcome is None and (self._tick is None or message.tick > self._tick):
             self._advance_timed(message.tick, measurements)
             return self._framed()
         return b""
+
+    def _meet(self, tick: int) -> None:
+        """A robot that is new to us at this tick."""
+        self._first, self._tick = tick, None
+        self._control, self._ahead = self._controller.start(), None
+        self._joining = Rest() if tick > 0 and self._controller.kind.predicts else None
 
     def _advance_timed(self, tick: int, measurements: list[Measurement]) -> None:
         started = self._clock() if self._clock else 0

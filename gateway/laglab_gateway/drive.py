@@ -15,6 +15,9 @@ from enum import Enum, auto
 from laglab_gateway.impairments import STRICT, NotNegative, Seconds
 from laglab_protocol import NO_COMMAND, Command
 
+FASTEST = 1e6
+"""[m/s], [rad/s] Nothing drives faster, whatever the limits: the wheels' speeds must be finite."""
+
 
 class Mode(Enum):
     """See the table above."""
@@ -67,7 +70,7 @@ def refusal(drive: Drive, command: Command, safety: Safety) -> Refusal | None:
 
 
 def _beyond(value: float, limit: float | None) -> bool:
-    return limit is not None and abs(value) > limit
+    return abs(value) > (FASTEST if limit is None else min(limit, FASTEST))
 
 
 def follow(command: Command, tick: int) -> Drive:

@@ -6,6 +6,7 @@ into force at k + 1, so a command is sent on one tick before it is due: it is in
 after its stamp, as on a simulated robot, unless n is 0; then it is one tick late.
 """
 
+from collections import deque
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -20,6 +21,7 @@ from laglab_protocol import (
     STATION_COMPONENT,
     STATION_HEARTBEAT,
     STATION_SYSTEM,
+    UNANNOUNCED,
     Codec,
     Command,
     End,
@@ -63,7 +65,7 @@ class Relay(RobotSide):
         self.robot_end: End | None = None
         robot_codec = Codec(STATION_SYSTEM, STATION_COMPONENT)
         self._to_robot, self._from_robot = robot_codec.sender, robot_codec.receiver
-        self._samples: list[Measurement] = []
+        self._samples: deque[Measurement] = deque(maxlen=UNANNOUNCED)
         self._heard = Heard(-1, [])
         self._last: Measurement | None = None
         self._in_force = -1
@@ -93,7 +95,8 @@ class Relay(RobotSide):
             case Measurement():
                 self._samples.append(frame.message)
             case Tick(tick, announced):
-                samples, self._samples = self._samples, []
+                samples = list(self._samples)
+                self._samples.clear()
                 if len(samples) == announced and tick > self._heard.tick:
                     self._heard = Heard(tick, samples)
                     return True

@@ -6,6 +6,7 @@ own (`relay`).
 """
 
 from abc import ABC, abstractmethod
+from collections import deque
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -23,6 +24,7 @@ from laglab_protocol import (
     ROBOT_SYSTEM,
     STATION_COMPONENT,
     STATION_SYSTEM,
+    UNANNOUNCED,
     Codec,
     Command,
     End,
@@ -105,7 +107,7 @@ class RobotSide(ABC):
     def _begin_tick(self, tick: int) -> None:
         self.tick = tick
         self._batch: list[Message] = []
-        self._estimates: list[Estimate] = []
+        self._estimates: deque[Estimate] = deque(maxlen=UNANNOUNCED)
         self._command: Command | None = None
 
     @property

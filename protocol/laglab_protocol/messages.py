@@ -20,6 +20,9 @@ Message = tuple[Any, ...]
 NO_COMMAND = -1
 """Measurement.command_tick when no command had come into force."""
 
+UNANNOUNCED = 256
+"""More frames than LAGLAB_TICK or LAGLAB_COMMAND can announce: so many are never asked for."""
+
 ROBOT_SYSTEM, ROBOT_COMPONENT = 1, 1
 STATION_SYSTEM, STATION_COMPONENT = 200, 190
 

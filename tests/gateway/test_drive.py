@@ -31,6 +31,12 @@ def test_what_is_refused(bad: Command, why: Refusal | None) -> None:
     assert refusal(follow(command(8), tick=10), bad, SAFETY) is why
 
 
+@pytest.mark.parametrize("speed", ["v", "omega"])
+def test_without_limits_too_nothing_drives_so_fast_that_the_wheels_overflow(speed: str) -> None:
+    assert refusal(Drive(), command(0, **{speed: 1e5}), Safety()) is None
+    assert refusal(Drive(), command(0, **{speed: 3e307}), Safety()) is Refusal.OUT_OF_LIMITS
+
+
 def test_it_stands_still_until_the_first_command() -> None:
     drive = supervise(Drive(), 1000, TS, SAFETY)
     assert drive.mode is Mode.WAITING

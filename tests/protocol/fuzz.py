@@ -1,6 +1,6 @@
 """Fuzzing by coverage, on demand: `pip install laglab[fuzz]`, then
 
-    python tests/protocol/fuzz.py receiver|signed|lint|services [-max_total_time=60]
+    python tests/protocol/fuzz.py receiver|signed|lint|services|station|relay [-max_total_time=60]
 
 What CI tries with hypothesis on every run, this tries for as long as it is let: no bytes raise,
 memory stays bounded, and nothing that is not verified changes any state.
@@ -8,15 +8,31 @@ memory stays bounded, and nothing that is not verified changes any state.
 
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import atheris
 
-with atheris.instrument_imports(include=["laglab_protocol", "laglab_gateway"]):
-    from laglab_gateway import Safety, Services, standard_parameters
+with atheris.instrument_imports(include=["laglab_protocol", "laglab_gateway", "laglab_controller"]):
+    from laglab_controller import Station, StationConfig
+    from laglab_gateway import (
+        GatewayConfig,
+        Relay,
+        Safety,
+        Services,
+        standard_parameters,
+    )
     from laglab_gateway.services import RobotState
-    from laglab_protocol import DialectError, Receiver, Sender
+    from laglab_protocol import (
+        ROBOT_COMPONENT,
+        ROBOT_SYSTEM,
+        STATION_COMPONENT,
+        STATION_SYSTEM,
+        DialectError,
+        Message,
+        Receiver,
+        Sender,
+    )
     from laglab_protocol.dialect import dialect_path
     from laglab_protocol.frame import Frame, encode
     from laglab_protocol.layout import LAYOUT_OF_ID
@@ -93,11 +109,49 @@ def services(data: bytes) -> None:
     assert under_test.parameters["DELAY_N"] == 10
 
 
+OURS = [LAYOUT_OF_ID[number] for number in range(52100, 52105)]
+
+
+def said(data: bytes) -> Iterator[Message]:
+    """Messages of our own with whatever is in their fields."""
+    while data:
+        layout = OURS[data[0] % len(OURS)]
+        payload, data = data[1 : 1 + layout.size], data[1 + layout.size :]
+        yield layout.type(*layout.unpack(payload.ljust(layout.size, b"\0"), 0))
+
+
+def station(data: bytes) -> None:
+    """Whatever the robot says."""
+    under_test, robot = Station(StationConfig()), Sender(ROBOT_SYSTEM, ROBOT_COMPONENT)
+    for message in said(data):
+        under_test.receive(robot.frame(message), datagram=True)
+        under_test.look_ahead()
+
+
+def relay(data: bytes) -> None:
+    """Whatever the robot says, and the station the same."""
+    safety = Safety()
+    under_test = Relay(
+        GatewayConfig(2, 3, 10**6, 0.01, safety), Services(standard_parameters(2, 3, safety))
+    )
+    robot, other = Sender(ROBOT_SYSTEM, ROBOT_COMPONENT), Sender(STATION_SYSTEM, STATION_COMPONENT)
+    for message in said(data):
+        under_test.receive(other.frame(message), whole=True)
+        for frame in under_test.receive_from_robot(robot.frame(message), whole=True):
+            if under_test.hear(frame):
+                if under_test.under_way:
+                    under_test.close_tick()
+                under_test.open_tick()
+        under_test.forward()
+
+
 TARGETS: dict[str, Callable[[bytes], None]] = {
     "receiver": receiver,
     "signed": signed,
     "lint": linted,
     "services": services,
+    "station": station,
+    "relay": relay,
 }
 
 if __name__ == "__main__":

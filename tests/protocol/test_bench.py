@@ -12,5 +12,5 @@ def test_every_row_is_measured() -> None:
         "encode signed",
         "decode signed",
     ]
-    assert all(row.ours_us > 0 and row.times_faster > 0 for row in rows)
+    assert all(min(row.ours_us, row.times_faster, row.c_us) > 0 for row in rows)
     assert "times faster" in str(rows[0])

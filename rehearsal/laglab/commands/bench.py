@@ -63,9 +63,8 @@ def bench_codec(
         rows = codec_bench.bench_codec(rounds)
     table = Table("", "ours, µs", "pymavlink, µs", "times faster", "C, µs", title="one message")
     for row in rows:
-        c = f"{row.c_us:.2f}" if row.c_us else ""
-        ratio = f"{row.times_faster:.1f}"
-        table.add_row(row.what, f"{row.ours_us:.2f}", f"{row.pymavlink_us:.2f}", ratio, c)
+        ours, theirs, c = (f"{each:.2f}" for each in (row.ours_us, row.pymavlink_us, row.c_us))
+        table.add_row(row.what, ours, theirs, f"{row.times_faster:.1f}", c)
     Console().print(table)
 
 
