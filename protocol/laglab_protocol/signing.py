@@ -25,8 +25,8 @@ _unpack_signature = struct.Struct("<BIH6s").unpack_from
 
 CLOCK_EVERY = 16
 """Timestamps: in between a signer counts on, for reading the clock costs a third of signing."""
-_NEXT, _CLOCK_EVERY = 1 << 8, (CLOCK_EVERY - 1) << 8
-"""The same where the link id stands in the lowest byte, as the two travel."""
+_NEXT = 1 << 8
+"""One timestamp more where the link id stands in the lowest byte, as the two travel."""
 
 Stream = tuple[int, int, int]
 """(link id, system, component)."""
@@ -70,13 +70,13 @@ class Signer:
         self._timestamps = timestamps or Timestamps()
         self._last = self._timestamps.last
         self._latest = self._last.get(stream, 0) << 8 | stream[0]
-        self._reserved = 0
+        self._reserved = self._counting_until = 0
         self._clock = clock
 
     def sign(self, frame: bytes) -> bytes:
         """`frame`, which carries the SIGNED flag, with its signature. No timestamp comes twice."""
         latest = self._latest + _NEXT
-        if latest > self._reserved or not latest & _CLOCK_EVERY:
+        if latest >= self._counting_until:
             latest = self._by_the_clock(latest)
         self._latest = latest
         stamped = frame + latest.to_bytes(7, "little")
@@ -85,10 +85,10 @@ class Signer:
 
     def _by_the_clock(self, least: int) -> int:
         timestamp = max(least >> 8, self._clock())
-        if timestamp << 8 > self._reserved:
-            reserved = self._timestamps.reserve(self._stream, timestamp)
-            self._last[self._stream] = reserved
-            self._reserved = reserved << 8
+        if timestamp > self._reserved:
+            self._reserved = self._timestamps.reserve(self._stream, timestamp)
+            self._last[self._stream] = self._reserved
+        self._counting_until = min(timestamp + CLOCK_EVERY, self._reserved + 1) << 8
         return timestamp << 8 | self._stream[0]
 
 
