@@ -111,11 +111,10 @@ class Controller:
         """The input that the estimator is told."""
         return u
 
-    def _at_arrival(self, x: Vector, flight: Flight, drive: Drive) -> Vector:
+    def _at_arrival(self, x: Vector, flight: Flight, drive: Drive) -> Way:
         """(29): where the robot will be when the command that is now made comes into force."""
-        if not self.kind.predicts:
-            return x
-        return np.array(joined(Way(*x.tolist()), flight.ahead))
+        pose = Way(*x.tolist())
+        return joined(pose, flight.ahead) if self.kind.predicts else pose
 
 
 def diverged(x: Vector) -> bool:

@@ -8,7 +8,7 @@ from typing import Generic, NamedTuple, TypeVar
 from laglab_controller import kalman
 from laglab_controller.estimator import Applied, Estimator, Measured, by_sampling
 from laglab_controller.kalman import Belief, Compared, Innovation
-from laglab_controller.log import Log, append
+from laglab_controller.log import Log, append, cut, logged
 from laglab_controller.model import Matrix, Model, Vector
 from laglab_controller.sliding import SlidingProduct
 from laglab_controller.windows import Windows
@@ -70,7 +70,7 @@ class DelayedEkf(Estimator[DelayedState[W]]):
         window: SlidingProduct[Vector, W] = SlidingProduct(
             self.windows.compose, self.windows.identity
         )
-        return DelayedState(0, Log(first, None, 1), window, self.windows)
+        return DelayedState(0, logged(first), window, self.windows)
 
     def predict(self, state: DelayedState[W], u: Vector) -> DelayedState[W]:
         """One more input in the window; unmeasured, the EKF follows `memory` ticks behind."""
@@ -144,25 +144,14 @@ class DelayedEkf(Estimator[DelayedState[W]]):
         self, state: DelayedState[W], late: Mapping[int, Vector], known: Mapping[int, Vector]
     ) -> DelayedState[W]:
         """With measurements and inputs (by the tick they led to) that came after the EKF passed."""
-        older, undone = _rolled_back(state.filtered, since=min({*late, *known}))
-        filtered = older
-        for past in reversed(undone):
+        log = state.filtered
+        oldest = log.newest.tick - (log.length - 1)
+        filtered, undone = cut(log, max(min({*late, *known}) - oldest, 0))
+        for past in undone:
             z = late.get(past.tick) if past.z is None else past.z
             u = known.get(past.tick, past.u)
-            if filtered is None or u is None:
-                filtered = Log(self._corrected(past.tick, u, past.prior, z), older, 1)
+            if filtered.length == 0 or u is None:
+                filtered = logged(self._corrected(past.tick, u, past.prior, z))
             else:
                 filtered = self._extend(filtered, u, z)
-        return DelayedState(state.tick, filtered or state.filtered, state.window, self.windows)
-
-
-def _rolled_back(
-    filtered: Log[Filtered], since: int
-) -> tuple[Log[Filtered] | None, list[Filtered]]:
-    """What was before `since`, and what was from there on, newest first."""
-    log: Log[Filtered] | None = filtered
-    undone: list[Filtered] = []
-    while log is not None and log.newest.tick >= since:
-        undone.append(log.newest)
-        log = log.older
-    return log, undone
+        return DelayedState(state.tick, filtered, state.window, self.windows)

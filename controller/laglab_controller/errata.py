@@ -87,7 +87,7 @@ class PrintedController(Controller):
         """v_c is the speed last commanded, which comes into force n ticks later."""
         return np.append(u, drive.v)
 
-    def _at_arrival(self, x: Vector, flight: Flight, drive: Drive) -> Vector:
+    def _at_arrival(self, x: Vector, flight: Flight, drive: Drive) -> Way:
         """(29), or as printed: u_{k+n-1} is not sent yet, so the last command there is, n times."""
         if Erratum.EXTRAPOLATION not in self.errata:
             return super()._at_arrival(x, flight, drive)
@@ -95,4 +95,4 @@ class PrintedController(Controller):
         pose = Way(*x.tolist())
         for _ in range(self.config.command_delay):
             pose = joined(pose, step)
-        return np.array(pose)
+        return pose

@@ -1,13 +1,12 @@
 """The commands in flight: which was sent when, and which is in force when."""
 
 from collections.abc import Sequence
-from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
 
 from laglab_controller.estimator import Applied
-from laglab_controller.log import Log, append, newest_first
+from laglab_controller.log import Log, append, logged
 from laglab_controller.model import Vector
 from laglab_controller.motion import NOWHERE, Way, joined
 from laglab_controller.robot import RobotModel
@@ -37,8 +36,8 @@ class Flight(NamedTuple):
     """All commands sent by now; the next tick is `tick`. Immutable."""
 
     tick: int
-    sent: Log[Vector] | None
-    """u_{tick-1} on top."""
+    sent: Log[Vector]
+    """Up to u_{tick-1}."""
     command_delay: int
     """n as the echoes have it: their median, or what the station was told before the first."""
     recent: tuple[int, ...]
@@ -54,7 +53,7 @@ class Flight(NamedTuple):
 def take_off(robot: RobotModel, command_delay: int) -> Flight:
     """Before the first command."""
     nothing: SlidingProduct[Vector, Way] = SlidingProduct(joined, NOWHERE)
-    return _rebuilt(robot, Flight(0, None, command_delay, (), -1, nothing, NOWHERE))
+    return _rebuilt(robot, Flight(0, logged(), command_delay, (), -1, nothing, NOWHERE))
 
 
 def send(robot: RobotModel, flight: Flight, u: Vector) -> tuple[Flight, Vector]:
@@ -107,5 +106,6 @@ def _believed(flight: Flight, since: int) -> list[Applied]:
 def _sent_since(flight: Flight, tick: int) -> list[Vector]:
     """u_tick and all after it; standing still for what was sent before tick 0."""
     count = flight.tick - tick
-    sent = list(islice(newest_first(flight.sent), count))
-    return [STAND] * (count - len(sent)) + sent[::-1]
+    items, length = flight.sent
+    sent = items[max(length - count, 0) : length]
+    return [STAND] * (count - len(sent)) + sent

@@ -21,7 +21,7 @@ class History(NamedTuple, Generic[Item, Product]):
     """The ticks after the split, with the product of their factors."""
     since: int
     """The oldest tick in the window."""
-    older: Log[Item] | None
+    older: Log[Item]
     """The ticks up to the split."""
     memory: int
     """How many ticks are kept at least."""

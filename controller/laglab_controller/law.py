@@ -1,6 +1,7 @@
 """The control law (2), (4) of Aicardi, with limits and a goal tolerance."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -37,9 +38,9 @@ class Law:
     omega_max: float | None = None
     goal_tolerance: float | None = None
 
-    def drive(self, pose: Vector, at_goal: bool) -> Drive:
+    def drive(self, pose: Iterable[float], at_goal: bool) -> Drive:
         """The command at a finite `pose` (3,). `at_goal` is the last answer's, False at first."""
-        x, y, theta = pose.tolist()
+        x, y, theta = pose
         x_goal, y_goal, theta_goal = self.goal
         rho = math.hypot(x_goal - x, y_goal - y)
         if self._holds(rho, at_goal):

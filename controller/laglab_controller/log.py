@@ -1,36 +1,50 @@
-"""A bounded past, newest first, that shares its older part with every earlier version of itself."""
+"""A bounded past that shares its items with every earlier version of itself."""
 
 from collections.abc import Iterator
-from itertools import islice
 from typing import Generic, NamedTuple, TypeVar
 
 Item = TypeVar("Item")
 
 
 class Log(NamedTuple, Generic[Item]):
-    """The newest item on top of an older log. Going back is following `older`."""
+    """The first `length` of `items`, oldest first; to be made by `logged` and `append` alone.
 
-    newest: Item
-    older: "Log[Item] | None"
+    What the list holds after them belongs to later versions: no version ever changes.
+    """
+
+    items: list[Item]
     length: int
 
+    @property
+    def newest(self) -> Item:
+        """The last one. Raises IndexError when there is none."""
+        if not self.length:
+            raise IndexError("the log is empty")
+        return self.items[self.length - 1]
 
-def append(log: Log[Item] | None, item: Item, limit: int) -> Log[Item]:
+
+def logged(*items: Item) -> Log[Item]:
+    """A log of these, oldest first."""
+    return Log(list(items), len(items))
+
+
+def append(log: Log[Item], item: Item, limit: int) -> Log[Item]:
     """With `item` as the newest; at least the last `limit` items stay, at most twice as many."""
-    if log is not None and log.length >= 2 * limit:
-        log = _newest(log, limit)
-    return Log(item, log, 1 if log is None else log.length + 1)
+    items, length = log
+    if length >= 2 * limit:
+        items = items[length - limit : length]
+    elif length != len(items):
+        items = items[:length]
+    items.append(item)
+    return Log(items, len(items))
 
 
-def newest_first(log: Log[Item] | None) -> Iterator[Item]:
+def newest_first(log: Log[Item]) -> Iterator[Item]:
     """All that is still kept."""
-    while log is not None:
-        yield log.newest
-        log = log.older
+    items, length = log
+    return (items[i] for i in range(length - 1, -1, -1))
 
 
-def _newest(log: Log[Item], count: int) -> Log[Item] | None:
-    kept: Log[Item] | None = None
-    for length, item in enumerate(reversed(list(islice(newest_first(log), count))), start=1):
-        kept = Log(item, kept, length)
-    return kept
+def cut(log: Log[Item], length: int) -> tuple[Log[Item], list[Item]]:
+    """What it was when it had that length, and what came then, oldest first."""
+    return Log(log.items, length), log.items[length : log.length]

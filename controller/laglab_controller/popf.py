@@ -7,6 +7,7 @@ from typing import NamedTuple
 from laglab_controller.estimator import Applied, Estimator, Measured, by_sampling
 from laglab_controller.history import History
 from laglab_controller.kalman import Belief, Compared, Innovation, gain, innovation
+from laglab_controller.log import logged
 from laglab_controller.model import Matrix, Model, Vector, identity, symmetric
 from laglab_controller.sliding import SlidingProduct
 
@@ -74,7 +75,7 @@ class Popf(Estimator[PopfState]):
         """The prior of tick 0."""
         I = identity(len(x))  # noqa: E741
         window: SlidingProduct[Step, Matrix] = SlidingProduct(_compose, I)
-        past = History(window, since=0, older=None, memory=self.memory)
+        past = History(window, since=0, older=logged(), memory=self.memory)
         return PopfState(0, x, P, Belief(x, P), I, past, used=0)
 
     def predict(self, state: PopfState, u: Vector) -> PopfState:

@@ -5,10 +5,9 @@ from dataclasses import dataclass
 from typing import Generic, NamedTuple, TypeVar
 
 from laglab_controller.estimator import Applied, Estimator, Measured, State
-from laglab_controller.history import History
 from laglab_controller.kalman import Innovation
+from laglab_controller.log import Log, append, cut, logged
 from laglab_controller.model import Matrix, Vector
-from laglab_controller.sliding import SlidingProduct
 
 S = TypeVar("S", bound=State)
 
@@ -16,7 +15,6 @@ S = TypeVar("S", bound=State)
 class Tick(NamedTuple, Generic[S]):
     """What was known at a past tick: all that had arrived there, and the input that followed."""
 
-    tick: int
     state: S
     arrived: tuple[Measured, ...]
     u: Vector
@@ -27,7 +25,8 @@ class RewindingState(NamedTuple, Generic[S]):
 
     state: S
     arrived: tuple[Measured, ...]
-    history: History[Tick[S], None]
+    past: Log[Tick[S]]
+    """Tick by tick up to the one before."""
 
     @property
     def tick(self) -> int:
@@ -58,15 +57,13 @@ class Rewinding(Generic[S]):
 
     def start(self, x: Vector, P: Matrix) -> RewindingState[S]:
         """The prior of tick 0."""
-        nothing: SlidingProduct[Tick[S], None] = SlidingProduct(_nothing, None)
-        history = History(nothing, since=0, older=None, memory=self.memory)
-        return RewindingState(self.estimator.start(x, P), (), history)
+        return RewindingState(self.estimator.start(x, P), (), logged())
 
     def predict(self, state: RewindingState[S], u: Vector) -> RewindingState[S]:
         """One tick further; what was known before is kept."""
-        inner, arrived, history = state
-        history = history.push(inner.tick, Tick(inner.tick, inner, arrived, u), None)
-        return RewindingState(self.estimator.predict(inner, u), (), history)
+        inner, arrived, past = state
+        past = append(past, Tick(inner, arrived, u), self.memory)
+        return RewindingState(self.estimator.predict(inner, u), (), past)
 
     def correct(
         self,
@@ -79,12 +76,12 @@ class Rewinding(Generic[S]):
         if known:
             state = self._put_right(state, known)
         inner = self.estimator.correct(state.state, measurements)
-        return RewindingState(inner, (*state.arrived, *measurements), state.history)
+        return RewindingState(inner, (*state.arrived, *measurements), state.past)
 
     def expect(self, state: RewindingState[S], s: int) -> RewindingState[S]:
         """The estimator's own."""
-        inner, arrived, history = state
-        return RewindingState(self.estimator.expect(inner, s), arrived, history)
+        inner, arrived, past = state
+        return RewindingState(self.estimator.expect(inner, s), arrived, past)
 
     def innovation(self, state: RewindingState[S]) -> Innovation | None:
         """The estimator's own."""
@@ -94,41 +91,22 @@ class Rewinding(Generic[S]):
         self, state: RewindingState[S], known: Mapping[int, Vector]
     ) -> RewindingState[S]:
         """Nothing is run again while all is as it was believed."""
-        inner, arrived, history = state
-        history = history.split(max(known))
-        oldest, past, wrong = min(known), [], 0
-        for then in history.backwards():
-            past.append(then)
-            u = known.get(then.tick)
-            if u is not None and u.tolist() != then.u.tolist():
-                wrong = len(past)
-            if then.tick <= oldest:
-                break
-        state = RewindingState(inner, arrived, history)
-        return self._again(state, past[:wrong], known) if wrong else state
+        past, length = state.past
+        first = state.tick - length
+        wrong = [
+            j for j, u in known.items() if j >= first and past[j - first].u.tolist() != u.tolist()
+        ]
+        return self._again(state, min(wrong), known) if wrong else state
 
     def _again(
-        self, state: RewindingState[S], undone: list[Tick[S]], known: Mapping[int, Vector]
+        self, state: RewindingState[S], since: int, known: Mapping[int, Vector]
     ) -> RewindingState[S]:
-        """From the oldest of `undone`, which are given newest first, to the present."""
-        history = state.history
-        past = [*reversed(undone), *history.window]
-        older = history.older
-        for _ in undone:
-            assert older is not None
-            older = older.older
-        first = past[0]
-        again = RewindingState(
-            first.state,
-            first.arrived,
-            History(history.window.emptied(), first.tick, older, self.memory),
-        )
-        arrived = [then.arrived for then in past[1:]] + [state.arrived]
-        for then, measurements in zip(past, arrived, strict=True):
-            again = self.predict(again, known.get(then.tick, then.u))
+        """From tick `since` to the present."""
+        length = state.past.length
+        older, undone = cut(state.past, since - (state.tick - length))
+        again = RewindingState(undone[0].state, undone[0].arrived, older)
+        arrived = [then.arrived for then in undone[1:]] + [state.arrived]
+        for then, measurements in zip(undone, arrived, strict=True):
+            again = self.predict(again, known.get(then.state.tick, then.u))
             again = self.correct(again, measurements)
         return again
-
-
-def _nothing(_older: None, _newer: None) -> None:
-    return None

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from laglab_controller.log import append, newest_first
+from laglab_controller.log import append, cut, logged, newest_first
 from laglab_controller.sliding import SlidingProduct
 
 pushes_and_pops = st.lists(st.one_of(st.text("abc", max_size=2), st.none()))
@@ -33,10 +33,29 @@ def test_an_empty_window_gives_no_item():
 
 @given(st.integers(0, 50), st.integers(1, 10))
 def test_a_log_keeps_at_least_its_limit_and_at_most_twice(count, limit):
-    log = None
+    log = logged()
     for item in range(count):
         log = append(log, item, limit)
+        assert log.newest == item
     kept = list(newest_first(log))
     assert kept == list(range(count))[::-1][: len(kept)]
     assert min(count, limit) <= len(kept) <= 2 * limit
-    assert log is None or log.length == len(kept)
+    assert log.length == len(kept)
+
+
+@given(st.lists(st.tuples(st.integers(0, 100), st.integers(0, 9)), max_size=30))
+def test_no_version_of_a_log_ever_changes(steps):
+    """Each step goes on from some earlier version, as a tree of runs would."""
+    versions = [(logged(), [])]
+    for which, item in steps:
+        log, expected = versions[which % len(versions)]
+        versions.append((append(log, item, limit=100), [*expected, item]))
+    for log, expected in versions:
+        assert list(newest_first(log))[::-1] == expected
+        older, newer = cut(log, len(expected) // 2)
+        assert list(newest_first(older))[::-1] + newer == expected
+
+
+def test_an_empty_log_has_no_newest():
+    with pytest.raises(IndexError):
+        _ = logged().newest
