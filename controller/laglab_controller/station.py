@@ -161,7 +161,8 @@ class Station:
         self._measurements.clear()
         if len(measurements) != message.measurements:
             return b""
-        if self._tick is None or message.tick - self._tick > LONGEST_GAP:
+        unknown = self._tick is None or message.tick - self._tick > LONGEST_GAP
+        if unknown and self._outcome is None:
             self._meet(message.tick)
         if message.tick == self._tick:
             return self._framed()

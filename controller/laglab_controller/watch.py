@@ -12,7 +12,7 @@ from laglab_controller.rewinding import RewindingState
 
 
 class TickTimes(NamedTuple):
-    """What the station's own work on a tick took [s]: half of the ticks, 99 %, all."""
+    """How long a tick waited for the station's answer [s]: half of the ticks, 99 %, all."""
 
     p50: float
     p99: float
