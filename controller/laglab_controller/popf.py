@@ -100,9 +100,9 @@ class Popf(Estimator[PopfState]):
         """With the gain for s, and the covariance after it: (21) to (24)."""
         if not (0 <= s <= state.tick and self._useful(state, s)):
             return state
-        tick, x, P, prior, left, past, used, *_ = state
+        tick, x, P, prior, left, past, used, compared, _ = state
         correction = self._correction(state, s)
-        return PopfState(tick, x, P, prior, left, past, used, expected=correction)
+        return PopfState(tick, x, P, prior, left, past, used, compared, correction)
 
     def _useful(self, state: PopfState, s: int) -> bool:
         lateness = state.tick - s

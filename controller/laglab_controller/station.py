@@ -119,11 +119,12 @@ class Station:
 
     def look_ahead(self) -> None:
         """Do now, while the robot is busy with the answer, what the next one would wait for."""
+        regular = self._latest is not None  # a measurement came, so at the next tick one may too
         self._judge_gain()
         under_way = self._tick is not None and self._joining is None and self._outcome is None
         if under_way and self._ahead is None:
             self._ahead = self._controller.advance(self._control)
-            if self._measurement_delay is not None:
+            if regular and self._measurement_delay is not None:
                 due = self._ahead.flight.tick - self._measurement_delay
                 self._ahead = self._controller.expect(self._ahead, due)
 
@@ -173,6 +174,7 @@ class Station:
 
     def _meet(self, tick: int) -> None:
         """A robot that is new to us at this tick."""
+        self._judge_gain()
         self._first, self._tick = tick, None
         self._control, self._ahead = self._controller.start(), None
         self._joining = Rest() if tick > 0 and self._controller.kind.predicts else None

@@ -89,8 +89,6 @@ class Conversation:
 
     def catch_up(self) -> None:
         """While the station thinks: write down what was, look after everybody else."""
-        if rows := self._gateway.take_link_rows():
-            self._recorder.link(rows)
         self._recorder.flush()
         self._look_around()
 
@@ -147,6 +145,8 @@ class Conversation:
         """Close the tick and record it; returns the tick."""
         row = self._gateway.close_tick()
         self._recorder.row(row)
+        if rows := self._gateway.take_link_rows():
+            self._recorder.link(rows)
         return row.tick
 
     def say_goodbye(self, outcome: Outcome) -> None:

@@ -17,9 +17,6 @@ from laglab_gateway.side import Outcome
 from laglab_gateway.watch import Watch
 from laglab_protocol import EndReason
 
-LONGEST_WAIT = 0.04
-"""[s] Longer waits are left to a kernel timer that is too coarse for a deadline."""
-
 
 class Lateness:
     """How late each tick began [s], and how many began after the next one was due."""
@@ -98,7 +95,7 @@ def _listen_until(deadline: float, gateway: Gateway, conversation: Conversation)
     """Take what arrives before the deadline; when this tick's answer came, if it did."""
     answered = None
     while (left := deadline - conversation.now()) > 0:
-        conversation.listen(min(left, LONGEST_WAIT))
+        conversation.listen(left)
         if answered is None and gateway.answered:
             answered = conversation.now()
     return answered

@@ -10,7 +10,7 @@ NEW_OBJECTS = 20_000
 
 @contextmanager
 def short_pauses() -> Iterator[None]:
-    """What is there at the start is not looked through again: it is all in use until the end."""
+    """For a process that runs one loop: what is there at its start is not looked through again."""
     usual = gc.get_threshold()
     gc.freeze()
     gc.set_threshold(NEW_OBJECTS, *usual[1:])

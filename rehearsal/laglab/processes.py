@@ -11,6 +11,7 @@ from pathlib import Path
 from time import monotonic
 from typing import Any
 
+from laglab.pauses import short_pauses
 from laglab.robot_side import Setup, open_robot
 from laglab.scenario import Scenario
 from laglab.station_side import open_station, station_statistics
@@ -97,6 +98,7 @@ def gateway_process(
             open_robot(scenario, setup) as serve,
             closing(FileRecorder(directory)) as recorder,
             open_endpoint(url) as endpoint,
+            short_pauses(),
         ):
             reports.send(Listening(endpoint.name))
             patience = Patience(silence=scenario.silence_timeout, connect=30.0)
@@ -109,7 +111,11 @@ def gateway_process(
 def station_process(scenario: Scenario, url: str, setup: Setup, reports: Connection) -> None:
     """The remote station's side."""
     try:
-        with open_endpoint(url) as endpoint, open_station(scenario, setup.key) as station:
+        with (
+            open_endpoint(url) as endpoint,
+            open_station(scenario, setup.key) as station,
+            short_pauses(),
+        ):
             run_station(station, endpoint, scenario.silence_timeout)
         reports.send(Answered(station_statistics(station)))
     except SIDE_ERRORS as error:

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 
 import laglab_fmu
-from laglab.pauses import short_pauses
 from laglab.scenario import Scenario
 from laglab_gateway import (
     IDEAL,
@@ -222,13 +221,12 @@ Serve = Callable[..., tuple[Outcome, dict[str, Any]]]
 def open_robot(scenario: Scenario, setup: Setup) -> Iterator[Serve]:
     """The robot's side: the FMU, or the real robot."""
     if setup.plant is None:
-        with open_gateway(scenario, setup.key, setup.armed) as gateway, short_pauses():
+        with open_gateway(scenario, setup.key, setup.armed) as gateway:
             yield partial(serve, scenario, gateway)
     else:
         with (
             open_endpoint(setup.plant) as robot,
             Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, setup.key) as codec,
-            short_pauses(),
         ):
             refuse_open_door(robot, None, setup.unsigned)
             yield partial(serve_real, scenario, robot, codec, setup.armed)

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from laglab.pauses import short_pauses
 from laglab.scenario import Scenario
 from laglab_controller import Law, RobotModel, Station, StationConfig
 from laglab_protocol import (
@@ -60,5 +59,5 @@ def station_statistics(station: Station) -> dict[str, Any]:
 @contextmanager
 def open_station(scenario: Scenario, key: Path | None = None) -> Iterator[Station]:
     """The remote station's side, its frames signed with a key."""
-    with Codec(STATION_SYSTEM, STATION_COMPONENT, key) as codec, short_pauses():
+    with Codec(STATION_SYSTEM, STATION_COMPONENT, key) as codec:
         yield Station(station_config(scenario), clock=time.monotonic_ns, codec=codec)

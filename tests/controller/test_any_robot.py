@@ -1,5 +1,6 @@
 """Whatever a robot says, the station answers or passes over: no exception, no growth, no hang."""
 
+import cProfile
 import math
 
 import numpy as np
@@ -51,3 +52,68 @@ def test_measurements_without_a_tick_are_forgotten() -> None:
     for k in range(5000):
         station.receive(robot.frame(Measurement(*np.zeros(5), k, -1)), datagram=True)
     assert len(station._measurements) < 300
+
+
+N = 2
+RNG = np.random.default_rng(3)
+LATE = {k: RNG.integers(12, size=1 + k % 3).tolist() if 30 <= k < 80 else [5] for k in range(1400)}
+"""How late the measurements are that come at tick k: always the same, then never as expected."""
+
+
+def messages_at(k: int, sent: dict[int, Command]) -> list[Message]:
+    """A robot that hardly moves says truthfully which command was in force."""
+    measurements = []
+    for s in [k - late for late in LATE[k] if late <= k]:
+        made = sent.get(s - 1 - N)
+        u = made[:2] if made else (0.0, 0.0)
+        measurements.append(Measurement(0.1, 0.001 * s, 0.0, *u, s, made.tick if made else -1))
+    return [*measurements, Tick(k, len(measurements))]
+
+
+@pytest.mark.parametrize("estimator", ESTIMATORS)
+def test_looking_ahead_changes_no_answer(estimator: str) -> None:
+    """Neither what comes unexpectedly, nor a repeat, nor meeting the robot anew."""
+    config = StationConfig(estimator=estimator, command_delay=N)
+    ahead, without = Station(config), Station(config)
+    robot, sent = Sender(1, 1), dict[int, Command]()
+    for k in (*range(80), *range(1200, 1400)):
+        data = b"".join(map(robot.frame, messages_at(k, sent)))
+        for _ in range(1 + (k % 11 == 0)):
+            answer = ahead.receive(data, datagram=True)
+            assert answer == without.receive(data, datagram=True)
+            ahead.look_ahead()
+        *_, command = [frame.message for frame in Receiver().receive(answer)]
+        sent[k] = command
+    assert ahead.tick == 1399
+    assert ahead.outcome is None
+    assert ahead.report() == without.report()
+
+
+def test_a_warning_is_not_lost_when_the_robot_is_met_anew() -> None:
+    station, robot = Station(StationConfig(initial_covariance=np.eye(3) * 10)), Sender(1, 1)
+    for k in range(6):
+        late = [Measurement(*[0.0] * 5, 0, -1)] if k == 5 else []
+        station.receive(b"".join(map(robot.frame, [*late, Tick(k, len(late))])), datagram=True)
+    station.receive(robot.frame(Tick(2000, 0)), datagram=True)
+    assert "tick 5: popf's gain is" in str(station.warning)
+
+
+def test_nothing_heard_after_the_end_is_of_any_account() -> None:
+    station, robot = Station(StationConfig()), Sender(1, 1)
+    for message in (Tick(0, 0), Tick(1, 0), End(1, 0), Tick(5000, 0)):
+        station.receive(robot.frame(message), datagram=True)
+    assert station.tick == 1
+
+
+def test_waiting_for_measurements_that_do_not_come_costs_no_more_from_tick_to_tick() -> None:
+    """Counted in calls of the model, not in seconds."""
+    station, robot = Station(StationConfig()), Sender(1, 1)
+    calls = []
+    for k in range(600):
+        late = [Measurement(*[0.0] * 5, k - 5, -1)] if 5 <= k < 100 else []
+        data = b"".join(map(robot.frame, [*late, Tick(k, len(late))]))
+        with cProfile.Profile() as profile:
+            station.receive(data, datagram=True)
+            station.look_ahead()
+        calls.append(sum(entry.callcount for entry in profile.getstats()))
+    assert max(calls[110:]) <= max(calls[50:100])

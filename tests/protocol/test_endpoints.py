@@ -2,6 +2,7 @@
 
 import os
 import termios
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -248,3 +249,32 @@ def test_a_pty_waits_as_long_as_told(stack: ExitStack, tmp_path: Path) -> None:
 
     assert robot.receive(0.05) == b""
     assert 0.049 < time.monotonic() - started < 0.5
+
+
+def test_a_refusal_that_comes_late_does_not_keep_the_processor_busy(stack: ExitStack) -> None:
+    """Over a network it comes after the first wait; the descriptor wakes, and there is nothing."""
+    with open_endpoint("udpin://:0") as nobody:
+        url = nobody.name.replace("udpin", "udpout")
+    station = stack.enter_context(open_endpoint(url))
+    later = threading.Timer(0.02, station.send, [b"x"])
+    later.start()
+    busy = time.thread_time()
+    assert station.receive(0.4) == b""
+    assert time.thread_time() - busy < 0.1
+    later.join()
+
+
+@pytest.mark.parametrize("vmin", [0, 1])
+def test_silence_on_a_serial_port_is_not_hanging_up(
+    stack: ExitStack, tmp_path: Path, vmin: int
+) -> None:
+    """Whatever another program has made of the port: with VMIN 0 a read gives no bytes at once."""
+    robot = stack.enter_context(open_endpoint(f"pty://{tmp_path / 'tty'}"))
+    station = stack.enter_context(open_endpoint(f"serial://{tmp_path / 'tty'}:57600"))
+    attributes = termios.tcgetattr(station.fileno())
+    attributes[6][termios.VMIN] = vmin
+    termios.tcsetattr(station.fileno(), termios.TCSANOW, attributes)
+    assert station.receive(0.01) == b""
+    robot.close()
+    with pytest.raises(FarEndGoneError):
+        station.receive(0.1)

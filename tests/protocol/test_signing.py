@@ -182,3 +182,21 @@ def test_timestamps_follow_the_clock() -> None:
     stamps = [stamp_of(sender.frame(COMMAND)) for _ in range(10 * CLOCK_EVERY + 1)]
 
     assert stamps[-1] >= NOW + 10 * 1000
+
+
+def test_no_timestamp_is_used_that_was_not_reserved() -> None:
+    """However little is reserved at a time: what is kept on disk is never behind what was said."""
+
+    class Stingy(Timestamps):
+        promised = 0
+
+        def reserve(self, stream: tuple[int, int, int], timestamp: int) -> int:
+            del stream
+            self.promised = timestamp + 2
+            return self.promised
+
+    timestamps = Stingy()
+    speaking = Signer(KEY, (0, 200, 190), timestamps, clock=lambda: 10**12)
+    for _ in range(50):
+        raw = speaking.sign(encode(COMMAND, 200, 190, 0, SIGNED))
+        assert int.from_bytes(raw[-12:-6], "little") <= timestamps.promised

@@ -2,7 +2,7 @@
 
 import contextlib
 import os
-import termios
+import select
 import tty
 from abc import ABC, abstractmethod
 from pathlib import Path
@@ -33,6 +33,8 @@ class _Tty(ABC):
     def __init__(self, name: str, descriptor: int) -> None:
         self.name = name
         self._descriptor = descriptor
+        self._line = select.poll()
+        self._line.register(descriptor, select.POLLHUP)
         os.set_blocking(descriptor, False)
 
     def fileno(self) -> int:
@@ -51,9 +53,9 @@ class _Tty(ABC):
             return None
         except OSError as error:
             raise self._gone(error.strerror) from error
-        if not data:
+        if not data and self._line.poll(0):
             raise self._gone("hung up")
-        return data
+        return data or None  # where VMIN is 0, as pyserial sets it, silence is a read of no bytes
 
     def send(self, data: bytes) -> None:
         while data:
@@ -102,7 +104,6 @@ class SerialPort(_Tty):
             self._port = serial.Serial(device, baud, timeout=0, exclusive=True)
         except (serial.SerialException, OSError, ValueError) as error:
             raise _cannot_open(name, error) from error
-        _tell_silence_from_hanging_up(self._port.fileno())
         super().__init__(name, self._port.fileno())
 
     def close(self) -> None:
@@ -140,13 +141,6 @@ class Pty(_Tty):
         self._link = None
         os.close(self._descriptor)
         os.close(self._slave)
-
-
-def _tell_silence_from_hanging_up(descriptor: int) -> None:
-    """Pyserial's VMIN of 0 makes both a read of no bytes; with 1, silence is BlockingIOError."""
-    attributes = termios.tcgetattr(descriptor)
-    attributes[6][termios.VMIN] = 1
-    termios.tcsetattr(descriptor, termios.TCSANOW, attributes)
 
 
 def _make_way(link: Path) -> None:

@@ -18,9 +18,9 @@ def first_bytes(read: Callable[[], bytes | None], descriptor: int, timeout: floa
     now = monotonic()
     deadline = now + timeout
     data = _poll(read, min(now + POLLED, deadline))
-    if data is None and timeout > POLLED:
-        select.select([descriptor], [], [], max(deadline - monotonic() - POLLED, 0.0))
-        data = _poll(read, deadline)
+    while data is None and (left := deadline - monotonic()) > 0:
+        select.select([descriptor], [], [], max(left - POLLED, 0.0))
+        data = _poll(read, min(monotonic() + POLLED, deadline))
     return data or b""
 
 

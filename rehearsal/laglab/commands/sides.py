@@ -11,6 +11,7 @@ from rich.console import Console
 from laglab.commands.run import EXIT_CODES, KeyOption, PlantOption, progress_bar
 from laglab.extras import STEPPING, require
 from laglab.options import on_scenario
+from laglab.pauses import short_pauses
 from laglab.robot_side import Setup, open_robot
 from laglab.scenario import Scenario
 from laglab.station_side import open_station
@@ -56,6 +57,7 @@ def gateway(
         closing(FileRecorder(out) if out else NoRecorder()) as recorder,
         open_endpoint(endpoint) as link,
         _watchers(watch or [], unsigned) as watchers,
+        short_pauses(),
     ):
         refuse_open_door(link, key, unsigned)
         for each in (link, *watchers):
@@ -92,7 +94,11 @@ def controller(
     key: KeyOption = None,
 ) -> None:
     """Be the remote station of SCENARIO: stabilise the robot at the other end."""
-    with open_endpoint(endpoint) as link, open_station(scenario, key) as station:
+    with (
+        open_endpoint(endpoint) as link,
+        open_station(scenario, key) as station,
+        short_pauses(),
+    ):
         typer.echo(f"calling {link.name}", err=True)
         end = run_station(
             station,
