@@ -121,7 +121,7 @@ def _station_rows(station: dict[str, Any]) -> dict[str, str]:
     rows = {"delays as the station saw them": f"n {station['n_seen']}, m {station['m_seen']} ticks"}
     if "tick_p99_s" in station:
         p50, p99 = (1e6 * station[f"tick_{name}_s"] for name in ("p50", "p99"))
-        rows["the station's work on a tick"] = f"p50 {p50:.0f} µs, p99 {p99:.0f} µs"
+        rows["the station's answer to a tick"] = f"p50 {p50:.0f} µs, p99 {p99:.0f} µs"
     return rows
 
 

@@ -178,3 +178,13 @@ def test_delayed_ekf_puts_a_wrong_input_right(record, wrong):
     right = run(estimator, record, 20)
     assert np.abs(state.x - right.estimates[-1]).max() < 1e-12
     assert np.abs(state.P - right.covariances[-1]).max() < 1e-12
+
+
+def test_what_is_prepared_for_a_measurement_hides_nothing_of_the_last_one():
+    popf = Popf(RobotModel())
+    state = popf.predict(popf.start(np.zeros(3), np.eye(3)), np.array((1.0, 0.0)))
+    state = popf.correct(state, [Measured(0, np.ones(3))])
+    before, after = popf.innovation(state), popf.innovation(popf.expect(state, 1))
+    assert before is not None
+    assert after is not None
+    np.testing.assert_array_equal(before.value, after.value)

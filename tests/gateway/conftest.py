@@ -4,7 +4,7 @@ import os
 import socket
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -43,28 +43,3 @@ def firmware(tmp_path_factory: pytest.TempPathFactory) -> Path:
         timeout=50,
     )
     return folder / "firmware"
-
-
-Start = Callable[..., "subprocess.Popen[str]"]
-
-
-@pytest.fixture
-def start(tmp_path: Path) -> Iterator[Start]:
-    """Start a program in the background; whatever still runs at the end is ended."""
-    running: list[subprocess.Popen[str]] = []
-
-    def call(*command: object) -> "subprocess.Popen[str]":
-        process = subprocess.Popen(
-            list(map(str, command)),
-            cwd=tmp_path,
-            stderr=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
-        running.append(process)
-        return process
-
-    yield call
-    for process in running:
-        process.kill()
-        process.communicate()

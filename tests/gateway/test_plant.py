@@ -1,7 +1,6 @@
 """The real robot in the same place: our commands, each a process, in front of the robot in C."""
 
 import json
-import re
 import signal
 import sys
 import time
@@ -48,6 +47,7 @@ from laglab_protocol import (
 
 Process = Any
 Start = Callable[..., Process]
+ListeningPort = Callable[[Process], str]
 LAGLAB = (sys.executable, "-m", "laglab")
 FAST, UNHURRIED = 4, 2
 N, M = 10, 20
@@ -59,21 +59,17 @@ class Rig(NamedTuple):
     robot: Process
 
 
-def port_of(gateway: Process) -> str:
-    found = re.search(r"listening on udpin://127\.0\.0\.1:(\d+)", gateway.stderr.readline())
-    assert found
-    return found[1]
-
-
 @pytest.fixture
-def rig(start: Start, firmware: Path, tmp_path: Path) -> Callable[..., Rig]:
+def rig(
+    start: Start, listening_port: ListeningPort, firmware: Path, tmp_path: Path
+) -> Callable[..., Rig]:
     """The scenario `lab`: gateway, controller, and the robot on the gateway's pty."""
 
     def call(*options: str, speed: int = FAST) -> Rig:
         lab = ("lab", "-n", str(N), "-m", str(M), *options)
         plant = ("--plant", f"pty://{tmp_path}/port", "--out", "run")
         gateway = start(*LAGLAB, "gateway", *lab, *plant, "--endpoint", "udpin://127.0.0.1:0")
-        address = f"udpout://127.0.0.1:{port_of(gateway)}"
+        address = f"udpout://127.0.0.1:{listening_port(gateway)}"
         robot = start(firmware, "--speed", speed, tmp_path / "port")
         return Rig(gateway, start(*LAGLAB, "controller", *lab, "--endpoint", address), robot)
 
@@ -219,13 +215,16 @@ def gateway_as_robot() -> Iterator[tuple[str, "Future[Outcome]"]]:
 
 
 def test_ctrl_c_reaches_both_sides(
-    start: Start, tmp_path: Path, gateway_as_robot: tuple[str, "Future[Outcome]"]
+    start: Start,
+    listening_port: ListeningPort,
+    tmp_path: Path,
+    gateway_as_robot: tuple[str, "Future[Outcome]"],
 ) -> None:
     address, robot = gateway_as_robot
     lab = ("lab", "--duration", "600")
     plant = ("--plant", address, "--out", "run")
     gateway = start(*LAGLAB, "gateway", *lab, *plant, "--endpoint", "udpin://127.0.0.1:0")
-    address = f"udpout://127.0.0.1:{port_of(gateway)}"
+    address = f"udpout://127.0.0.1:{listening_port(gateway)}"
     station = start(*LAGLAB, "controller", *lab, "--endpoint", address)
     wait_until(tmp_path, is_driving)
     gateway.send_signal(signal.SIGINT)

@@ -1,11 +1,11 @@
 """Runs of the real command, in a process of its own or in this one."""
 
 import json
-import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -63,36 +63,6 @@ def rehearsed(tmp_path: Path) -> Callable[..., dict[str, Any]]:
 
 
 @pytest.fixture
-def start(tmp_path: Path) -> Iterator[Start]:
+def start(start: Start) -> Start:
     """Start ``laglab ARGUMENTS`` in the background; whatever still runs at the end is ended."""
-    running: list[subprocess.Popen[str]] = []
-
-    def call(*arguments: str) -> "subprocess.Popen[str]":
-        process = subprocess.Popen(
-            [sys.executable, "-m", "laglab", *arguments],
-            cwd=tmp_path,
-            stderr=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
-        running.append(process)
-        return process
-
-    yield call
-    for process in running:
-        process.kill()
-        process.communicate()
-
-
-@pytest.fixture
-def listening_port() -> Callable[["subprocess.Popen[str]"], str]:
-    """The UDP port on loopback that a gateway in the background says it listens on."""
-
-    def read(gateway: "subprocess.Popen[str]") -> str:
-        assert gateway.stderr is not None
-        line = gateway.stderr.readline()
-        found = re.search(r"listening on udpin://127\.0\.0\.1:(\d+)", line)
-        assert found, line
-        return found[1]
-
-    return read
+    return partial(start, sys.executable, "-m", "laglab")

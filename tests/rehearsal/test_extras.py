@@ -1,10 +1,10 @@
 """Each side alone, where only what it needs is installed."""
 
 import os
-import re
 import subprocess
 import sys
 import venv
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -49,14 +49,6 @@ class Machine:
         return errors
 
 
-def port_of(gateway: "subprocess.Popen[str]") -> str:
-    assert gateway.stderr is not None
-    line = gateway.stderr.readline()
-    found = re.search(r"listening on udpin://127\.0\.0\.1:(\d+)", line)
-    assert found, line
-    return found[1]
-
-
 def test_no_command_loads_what_it_does_not_need() -> None:
     asked = "print([name for name in ('fmpy', 'matplotlib') if name in sys.modules])"
     script = [sys.executable, "-c", f"import sys, laglab.command; {asked}"]
@@ -67,7 +59,7 @@ def test_no_command_loads_what_it_does_not_need() -> None:
 @pytest.mark.slow
 @pytest.mark.timeout(300)
 def test_each_side_runs_where_only_what_it_needs_is_installed(
-    bare_clone: Path, tmp_path: Path
+    bare_clone: Path, tmp_path: Path, listening_port: Callable[["subprocess.Popen[str]"], str]
 ) -> None:
     machine = Machine(tmp_path, bare_clone)
     machine.install(".[controller]")
@@ -78,7 +70,9 @@ def test_each_side_runs_where_only_what_it_needs_is_installed(
 
     ours = [sys.executable, "-m", "laglab", "gateway", *OPTIONS, "udpin://127.0.0.1:0"]
     with subprocess.Popen(ours, stderr=subprocess.PIPE, text=True) as gateway:
-        station = machine.start("controller", *OPTIONS, f"udpout://127.0.0.1:{port_of(gateway)}")
+        station = machine.start(
+            "controller", *OPTIONS, f"udpout://127.0.0.1:{listening_port(gateway)}"
+        )
         assert "Traceback" not in station.communicate(timeout=40)[1]
         assert (station.returncode, gateway.wait(10)) == (0, 0)
 
@@ -86,7 +80,9 @@ def test_each_side_runs_where_only_what_it_needs_is_installed(
     assert machine.has("fmpy")
     assert not machine.has("matplotlib")
     with machine.start("gateway", *OPTIONS, "udpin://127.0.0.1:0") as gateway:
-        station = machine.start("controller", *OPTIONS, f"udpout://127.0.0.1:{port_of(gateway)}")
+        station = machine.start(
+            "controller", *OPTIONS, f"udpout://127.0.0.1:{listening_port(gateway)}"
+        )
         assert "Traceback" not in station.communicate(timeout=40)[1]
         assert (station.returncode, gateway.wait(10)) == (0, 0)
     assert "matplotlib is not installed" in machine.refuses("run", "lab")
