@@ -17,7 +17,7 @@ def main(path):
     first = next(message for heard in session for message in heard.measurements)
     for name in ("ekf", "popf", "delayed-ekf"):
         config = StationConfig(
-            estimator=name, initial_estimate=first[:3], initial_covariance=np.eye(3) * 1e-3
+            estimator=name, initial_estimate=first.pose, initial_covariance=np.eye(3) * 1e-3
         )
         estimates = shadow(config, session)
         x, y, theta = estimates.estimates[-1]

@@ -12,16 +12,18 @@ from laglab_protocol import Measurement
 def measured(messages: Sequence[Measurement], first: int, tick: int) -> list[Measured]:
     """The poses measured from tick `first` to the present `tick`; no others make sense."""
     return [
-        Measured(sampled - first, np.array((x, y, theta)))
-        for x, y, theta, _, _, sampled, _ in messages
-        if first <= sampled <= tick
+        Measured(message.tick - first, np.array(message.pose))
+        for message in messages
+        if first <= message.tick <= tick
     ]
 
 
 def echoes(messages: Sequence[Measurement], first: int, tick: int) -> list[Echo]:
     """The commands that were in force just before each was sampled."""
-    return [
-        Echo(sampled - first - 1, np.array((v, omega)), made - first if made >= first else None)
-        for _, _, _, v, omega, sampled, made in messages
-        if first < sampled <= tick
-    ]
+    return [_echo(message, first) for message in messages if first < message.tick <= tick]
+
+
+def _echo(message: Measurement, first: int) -> Echo:
+    made = message.command_tick - first
+    speeds = np.array(message.speeds)
+    return Echo(message.tick - first - 1, speeds, made if made >= 0 else None)

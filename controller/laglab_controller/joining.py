@@ -36,7 +36,7 @@ def observe(rest: Rest, measurement: Measurement, model: RobotModel) -> Rest:
         return rest
     if measurement.v != 0 or measurement.omega != 0:
         return Rest(tick=measurement.tick)
-    z, samples = np.array(measurement[:3]), rest.samples + 1
+    z, samples = np.array(measurement.pose), rest.samples + 1
     mean = z if samples == 1 else rest.mean + model.innovation(z, rest.mean) / samples
     return Rest(samples, measurement.tick, mean)
 

@@ -73,7 +73,8 @@ class Relay(RobotSide):
     @property
     def state(self) -> RobotState:
         """The robot by its last measurement, for those who ask."""
-        return RobotState(self.time_us, *(self._last[:5] if self._last else (0.0,) * 5))
+        last = self._last
+        return RobotState(self.time_us, *(last.pose + last.speeds if last else (0.0,) * 5))
 
     def greeting(self) -> bytes:
         """The frame that makes the robot begin its ticks."""
@@ -145,11 +146,11 @@ class Relay(RobotSide):
 
     def _sampled(self) -> tuple[float | None, float | None, float | None]:
         last = self._last
-        return last[:3] if last and last.tick == self.tick else UNKNOWN
+        return last.pose if last and last.tick == self.tick else UNKNOWN
 
     def _reported(self) -> tuple[float | None, float | None]:
         """v and ω on [t_k, t_{k+1}), which the sample of k + 1 echoes."""
-        echoes = [z[3:5] for z in self._heard.samples if z.tick == self.tick + 1]
+        echoes = [z.speeds for z in self._heard.samples if z.tick == self.tick + 1]
         return echoes[0] if echoes else (None, None)
 
     def end_of_robot(self, reason: EndReason) -> bytes:

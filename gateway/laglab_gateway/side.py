@@ -256,8 +256,8 @@ class RobotSide(ABC):
         sample: tuple[Cell, Cell, Cell],
         speeds: tuple[Cell, Cell],
     ) -> TraceRow:
-        x_est, y_est, theta_est = self._estimates[0][:3] if self._estimates else (None,) * 3
-        v_sent, omega_sent = self._command[:2] if self._command else (None, None)
+        x_est, y_est, theta_est = self._estimates[0].pose if self._estimates else (None,) * 3
+        v_sent, omega_sent = self._command.speeds if self._command else (None, None)
         return TraceRow(
             self.tick,
             self.elapsed * self._config.sample_time,

@@ -15,6 +15,7 @@ from laglab_protocol.errors import (
 )
 from laglab_protocol.frame import Frame, Refusal
 from laglab_protocol.keys import Codec, make_key, read_key, refuse_open_door
+from laglab_protocol.message import Message
 from laglab_protocol.messages import (
     NO_COMMAND,
     ROBOT_COMPONENT,
@@ -27,7 +28,6 @@ from laglab_protocol.messages import (
     EndReason,
     Estimate,
     Measurement,
-    Message,
     Tick,
     message_type,
 )

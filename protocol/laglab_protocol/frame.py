@@ -10,12 +10,13 @@ definition has of its own (https://mavlink.io/en/guide/serialization.html).
 
 import struct
 from enum import Enum, auto
-from typing import Any, NamedTuple, final
+from typing import final
 
 from fastcrc import crc16
+from msgspec import Struct
 
-from laglab_protocol.layout import LAYOUT_OF_ID, Layout, layout_of
-from laglab_protocol.messages import Message
+from laglab_protocol.layout import LAYOUT_OF_ID, Layout
+from laglab_protocol.message import Message
 
 START = 0xFD
 HEADER_SIZE = 10
@@ -24,7 +25,6 @@ SIGNATURE_SIZE = 13
 SIGNED = 0x01
 """The only incompatibility flag that MAVLink 2 defines so far."""
 
-_new_tuple: Any = tuple.__new__
 _crc = crc16.mcrf4xx
 _SHORTEST_BODY = 9
 """From the third byte of a frame to the end of a payload of one byte."""
@@ -37,7 +37,7 @@ _unpack_header = struct.Struct("<xBBxBBBI").unpack_from  # one byte beyond the i
 
 
 @final
-class Frame(NamedTuple):
+class Frame(Struct, frozen=True, gc=False):
     """A message as it travelled. `raw` is the whole frame, its signature included."""
 
     message: Message
@@ -68,26 +68,16 @@ class Refusal(Enum):
     """Signed with our key, but no later than what this stream has said, or a minute old."""
 
 
-def encode(message: Message, system: int, component: int, sequence: int, flags: int = 0) -> bytes:
-    """The frame of `message`, unsigned; `flags` are the incompatibility flags.
-
-    Raises DialectError for a class that is no message, struct.error for a value out of range.
-    """
-    layout = layout_of(message)
-    head = header(layout, system, component, sequence, flags)
-    return enclose(head + layout.pack(*message), layout.crc_extra)
-
-
 def header(layout: Layout, system: int, component: int, sequence: int, flags: int) -> bytes:
     """What stands between the length and the payload."""
     return _pack_header(flags, 0, sequence, system, component, layout.id_bytes)
 
 
-def enclose(body: bytes, crc_extra: bytes) -> bytes:
-    """The frame whose header and untruncated payload are `body`."""
+def enclose(body: bytes, crc_extra: bytes) -> tuple[bytes, int]:
+    """The frame up to its CRC, and the CRC; header and untruncated payload are `body`."""
     body = body.rstrip(b"\0").ljust(_SHORTEST_BODY, b"\0")
     opening, crc = _OPENINGS[len(body)]
-    return opening + body + _crc(body + crc_extra, crc).to_bytes(2, "little")
+    return opening + body, _crc(body + crc_extra, crc)
 
 
 def decode(buffer: bytes, start: int, signed_too: bool = True) -> Frame | Refusal:
@@ -119,7 +109,4 @@ def decode(buffer: bytes, start: int, signed_too: bool = True) -> Frame | Refusa
         fields = layout.unpack(buffer, body)
     else:
         fields = layout.unpack(buffer[body:end].ljust(layout.size, b"\0"), 0)
-    # What NamedTuple._make does, without its check of the count: the struct has fixed it.
-    message = _new_tuple(layout.type, fields)
-    frame: Frame = _new_tuple(Frame, (message, system, component, sequence, buffer[start:stop]))
-    return frame
+    return Frame(layout.type(*fields), system, component, sequence, buffer[start:stop])

@@ -8,7 +8,8 @@ from typing import Any
 
 from laglab_protocol.errors import DialectError
 from laglab_protocol.generated import laglab as dialect
-from laglab_protocol.messages import Message, message_type
+from laglab_protocol.message import Message
+from laglab_protocol.messages import message_type
 
 
 @dataclass(frozen=True, slots=True)

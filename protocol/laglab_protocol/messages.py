@@ -1,21 +1,17 @@
-"""The messages as NamedTuples, fields in the order in which they travel, named as in the XML.
+"""The messages that this project handles, named as in the XML.
 
-Those that this project handles are written out, so that a type checker knows their fields; every
-other message of the dialect is had by `message_type("NAME")`. Integer fields take ints, float and
-double fields floats, text fields bytes (without the zero bytes that pad them), arrays tuples.
-Fields that a message gained later (MAVLink 2 extensions) default to 0, as a receiver reads them.
+They are written out, so that a type checker knows their fields; every other message of the dialect
+is had by `message_type("NAME")`.
 """
 
-from collections import namedtuple
 from enum import IntEnum
-from typing import Any, NamedTuple
+
+from msgspec import defstruct
 
 from laglab_protocol.errors import DialectError
 from laglab_protocol.generated import laglab as dialect
+from laglab_protocol.message import Message
 from laglab_protocol.standard import STANDARD
-
-Message = tuple[Any, ...]
-"""Any message: a class of this module or of `standard`, or one that `message_type` returns."""
 
 NO_COMMAND = -1
 """Measurement.command_tick when no command had come into force."""
@@ -36,14 +32,14 @@ class EndReason(IntEnum):
     FAILED = 3
 
 
-class Tick(NamedTuple):
+class Tick(Message, frozen=True):
     """Robot: tick k has begun; so many measurements precede this message in its datagram."""
 
     tick: int
     measurements: int
 
 
-class Measurement(NamedTuple):
+class Measurement(Message, frozen=True):
     """Robot: the pose measured at `tick` [m, m, rad], the command then in force [m/s, rad/s]."""
 
     x: float
@@ -54,8 +50,18 @@ class Measurement(NamedTuple):
     tick: int
     command_tick: int
 
+    @property
+    def pose(self) -> tuple[float, float, float]:
+        """x, y [m] and θ [rad], as measured."""
+        return self.x, self.y, self.theta
 
-class Command(NamedTuple):
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """v [m/s] and ω [rad/s], as commanded."""
+        return self.v, self.omega
+
+
+class Command(Message, frozen=True):
     """Station: the command for `tick` [m/s, rad/s]; so many estimates precede it."""
 
     v: float
@@ -65,8 +71,13 @@ class Command(NamedTuple):
     target_component: int
     estimates: int
 
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """v [m/s] and ω [rad/s]."""
+        return self.v, self.omega
 
-class Estimate(NamedTuple):
+
+class Estimate(Message, frozen=True):
     """Station: the estimate at `tick` after its correction [m, m, rad], and its covariance."""
 
     x: float
@@ -80,8 +91,13 @@ class Estimate(NamedTuple):
     p_tt: float
     tick: int
 
+    @property
+    def pose(self) -> tuple[float, float, float]:
+        """x, y [m] and θ [rad]."""
+        return self.x, self.y, self.theta
 
-class End(NamedTuple):
+
+class End(Message, frozen=True):
     """Either side: the run ended after `tick` for this reason."""
 
     tick: int
@@ -109,8 +125,10 @@ def message_id(name: str) -> int:
 
 
 def message_type(name: str) -> type[Message]:
-    """The NamedTuple class of any message of the dialect, by its name in the XML."""
+    """The class of any message of the dialect, by its name in the XML."""
     if name not in _types:
         generated = dialect.mavlink_map[message_id(name)]
-        _types[name] = namedtuple(name, generated.ordered_fieldnames)
+        made = defstruct(name, generated.ordered_fieldnames, bases=(Message,))
+        assert issubclass(made, Message)
+        _types[name] = made
     return _types[name]

@@ -75,14 +75,14 @@ class Receiver:
             if verifier and type(found) is Frame:
                 found = verifier.refuses(found) or found
             if type(found) is Frame:
-                _, system, component, sequence, raw = found
-                peer = system << 8 | component
+                peer = found.system << 8 | found.component
+                sequence = found.sequence
                 if expected.get(peer) == sequence:
                     expected[peer] = (sequence + 1) & 0xFF
                 else:
                     self._out_of_sequence(peer, sequence)
                 frames.append(found)
-                position += len(raw)
+                position += len(found.raw)
             elif found is Refusal.INCOMPLETE:
                 self._rest = buffer[position:]
                 break

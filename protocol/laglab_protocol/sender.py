@@ -1,21 +1,17 @@
 """One station's voice: it numbers the frames that it makes, and signs them."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+
+from msgspec.structs import astuple
 
 from laglab_protocol.frame import SIGNED, enclose, header
 from laglab_protocol.layout import layout_of
-from laglab_protocol.messages import Message
+from laglab_protocol.message import Message
 from laglab_protocol.signing import Signer
 
-
-class Form(NamedTuple):
-    """What all the frames of one type from one sender have in common."""
-
-    headers: list[bytes]
-    """By sequence number."""
-    pack: Callable[..., bytes]
-    crc_extra: bytes
+Form = tuple[list[bytes], Callable[..., bytes], bytes]
+"""What all the frames of one type from one sender have in common: headers by sequence number,
+the packing of the fields, the CRC's extra byte."""
 
 
 class Sender:
@@ -25,7 +21,6 @@ class Sender:
         self._system = system
         self._component = component
         self._signer = signer
-        self._flags = SIGNED if signer else 0
         self._sequence = 0
         self._forms: dict[type[Message], Form] = {}
 
@@ -36,16 +31,16 @@ class Sender:
         neither uses up a sequence number.
         """
         headers, pack, crc_extra = self._forms.get(type(message)) or self._form(message)
-        made = enclose(headers[self._sequence] + pack(*message), crc_extra)
+        made, crc = enclose(headers[self._sequence] + pack(*astuple(message)), crc_extra)
         self._sequence = (self._sequence + 1) & 0xFF
-        return self._signer.sign(made) if self._signer else made
+        return self._signer.sign(made, crc) if self._signer else made + crc.to_bytes(2, "little")
 
     def _form(self, message: Message) -> Form:
         layout = layout_of(message)
+        flags = SIGNED if self._signer else 0
         headers = [
-            header(layout, self._system, self._component, sequence, self._flags)
+            header(layout, self._system, self._component, sequence, flags)
             for sequence in range(256)
         ]
-        form = Form(headers, layout.pack, layout.crc_extra)
-        self._forms[type(message)] = form
+        form = self._forms[type(message)] = headers, layout.pack, layout.crc_extra
         return form

@@ -25,8 +25,8 @@ _unpack_signature = struct.Struct("<BIH6s").unpack_from
 
 CLOCK_EVERY = 16
 """Timestamps: in between a signer counts on, for reading the clock costs a third of signing."""
-_NEXT = 1 << 8
-"""One timestamp more where the link id stands in the lowest byte, as the two travel."""
+_NEXT = 1 << 24
+"""One timestamp more where CRC and link id stand below it, as the three travel."""
 
 Stream = tuple[int, int, int]
 """(link id, system, component)."""
@@ -69,27 +69,27 @@ class Signer:
         self._stream = stream
         self._timestamps = timestamps or Timestamps()
         self._last = self._timestamps.last
-        self._latest = self._last.get(stream, 0) << 8 | stream[0]
+        self._latest = self._last.get(stream, 0) << 24 | stream[0] << 16
         self._reserved = self._counting_until = 0
         self._clock = clock
 
-    def sign(self, frame: bytes) -> bytes:
-        """`frame`, which carries the SIGNED flag, with its signature. No timestamp comes twice."""
+    def sign(self, frame: bytes, crc: int) -> bytes:
+        """`frame`, which ends before its CRC, with CRC and signature. No timestamp comes twice."""
         latest = self._latest + _NEXT
         if latest >= self._counting_until:
             latest = self._by_the_clock(latest)
         self._latest = latest
-        stamped = frame + latest.to_bytes(7, "little")
+        stamped = frame + (latest | crc).to_bytes(9, "little")
         # Hashing the key anew each time costs less than copying a hash that has taken it in.
         return stamped + sha256(self._key + stamped).digest()[:6]
 
     def _by_the_clock(self, least: int) -> int:
-        timestamp = max(least >> 8, self._clock())
+        timestamp = max(least >> 24, self._clock())
         if timestamp > self._reserved:
             self._reserved = self._timestamps.reserve(self._stream, timestamp)
             self._last[self._stream] = self._reserved
-        self._counting_until = min(timestamp + CLOCK_EVERY, self._reserved + 1) << 8
-        return timestamp << 8 | self._stream[0]
+        self._counting_until = min(timestamp + CLOCK_EVERY, self._reserved + 1) << 24
+        return timestamp << 24 | self._stream[0] << 16
 
 
 class Verifier:
@@ -111,14 +111,14 @@ class Verifier:
 
     def refuses(self, frame: Frame) -> Refusal | None:
         """Why `frame` may not pass, None when it may. `allow_unsigned` holds message names."""
-        message, system, component, _, raw = frame
+        raw = frame.raw
         if not raw[2] & SIGNED:
-            allowed = layout_of(message).name in self._allow_unsigned
+            allowed = layout_of(frame.message).name in self._allow_unsigned
             return None if allowed else Refusal.UNSIGNED
         link, low, high, signature = _unpack_signature(raw, -SIGNATURE_SIZE)
         if not compare_digest(sha256(self._key + raw[:-6]).digest()[:6], signature):
             return Refusal.BAD_SIGNATURE
-        stream, timestamp = (link, system, component), low | high << 32
+        stream, timestamp = (link, frame.system, frame.component), low | high << 32
         last = self._last.get(stream)
         if timestamp <= (self._earliest_new() if last is None else last):
             return Refusal.REPLAYED

@@ -3,12 +3,11 @@
 What they mean is told at https://mavlink.io/en/messages/common.html; units as there.
 """
 
-from typing import Any, NamedTuple
-
 from laglab_protocol.generated import laglab as mavlink
+from laglab_protocol.message import Message
 
 
-class Heartbeat(NamedTuple):
+class Heartbeat(Message, frozen=True):
     """Anybody, once a second: I am here, and of this kind."""
 
     custom_mode: int
@@ -30,7 +29,7 @@ STATION_HEARTBEAT = Heartbeat(
 """How a remote station makes itself known to the robot."""
 
 
-class SysStatus(NamedTuple):
+class SysStatus(Message, frozen=True):
     """The robot's health: sensors as bits of MAV_SYS_STATUS_SENSOR, load in 0.1 %."""
 
     onboard_control_sensors_present: int
@@ -51,14 +50,14 @@ class SysStatus(NamedTuple):
     onboard_control_sensors_health_extended: int = 0
 
 
-class SystemTime(NamedTuple):
+class SystemTime(Message, frozen=True):
     """The sender's clocks: Unix time [us], 0 if unknown, and time since its start [ms]."""
 
     time_unix_usec: int
     time_boot_ms: int
 
 
-class Ping(NamedTuple):
+class Ping(Message, frozen=True):
     """A ping, target 0, or the answer to one, at whom it came from."""
 
     time_usec: int
@@ -67,14 +66,14 @@ class Ping(NamedTuple):
     target_component: int
 
 
-class Timesync(NamedTuple):
+class Timesync(Message, frozen=True):
     """Asked with tc1 = 0, ts1 = now [ns]; answered with tc1 = now there and the same ts1."""
 
     tc1: int
     ts1: int
 
 
-class Attitude(NamedTuple):
+class Attitude(Message, frozen=True):
     """Roll, pitch, yaw of the body (forward, right, down) against north, east, down [rad]."""
 
     time_boot_ms: int
@@ -86,7 +85,7 @@ class Attitude(NamedTuple):
     yawspeed: float
 
 
-class LocalPositionNed(NamedTuple):
+class LocalPositionNed(Message, frozen=True):
     """Position [m] and velocity [m/s], north, east, down."""
 
     time_boot_ms: int
@@ -98,7 +97,7 @@ class LocalPositionNed(NamedTuple):
     vz: float
 
 
-class Odometry(NamedTuple):
+class Odometry(Message, frozen=True):
     """Pose in `frame_id` and velocity in `child_frame_id`, with covariances (upper triangles)."""
 
     time_usec: int
@@ -121,7 +120,7 @@ class Odometry(NamedTuple):
     quality: int = 0
 
 
-class ParamRequestRead(NamedTuple):
+class ParamRequestRead(Message, frozen=True):
     """Asks for one parameter, by index, or by name if the index is -1."""
 
     param_index: int
@@ -130,14 +129,14 @@ class ParamRequestRead(NamedTuple):
     param_id: bytes
 
 
-class ParamRequestList(NamedTuple):
+class ParamRequestList(Message, frozen=True):
     """Asks for all parameters."""
 
     target_system: int
     target_component: int
 
 
-class ParamSet(NamedTuple):
+class ParamSet(Message, frozen=True):
     """Asks for a parameter to be set; answered with PARAM_VALUE, whatever came of it."""
 
     param_value: float
@@ -147,7 +146,7 @@ class ParamSet(NamedTuple):
     param_type: int
 
 
-class ParamValue(NamedTuple):
+class ParamValue(Message, frozen=True):
     """The value that a parameter has."""
 
     param_value: float
@@ -157,7 +156,7 @@ class ParamValue(NamedTuple):
     param_type: int
 
 
-class ParamError(NamedTuple):
+class ParamError(Message, frozen=True):
     """Why a parameter was not read or set (MAV_PARAM_ERROR)."""
 
     param_index: int
@@ -167,7 +166,7 @@ class ParamError(NamedTuple):
     error: int
 
 
-class CommandLong(NamedTuple):
+class CommandLong(Message, frozen=True):
     """A command (MAV_CMD) with seven numbers; always answered with COMMAND_ACK."""
 
     param1: float
@@ -183,7 +182,7 @@ class CommandLong(NamedTuple):
     confirmation: int
 
 
-class CommandInt(NamedTuple):
+class CommandInt(Message, frozen=True):
     """A command (MAV_CMD) with a position as integers; always answered with COMMAND_ACK."""
 
     param1: float
@@ -201,7 +200,7 @@ class CommandInt(NamedTuple):
     autocontinue: int
 
 
-class CommandAck(NamedTuple):
+class CommandAck(Message, frozen=True):
     """What became of a command (MAV_RESULT)."""
 
     command: int
@@ -212,7 +211,7 @@ class CommandAck(NamedTuple):
     target_component: int = 0
 
 
-class AutopilotVersion(NamedTuple):
+class AutopilotVersion(Message, frozen=True):
     """What runs here, and what it can do (MAV_PROTOCOL_CAPABILITY)."""
 
     capabilities: int
@@ -229,14 +228,14 @@ class AutopilotVersion(NamedTuple):
     uid2: tuple[int, ...] = (0,) * 18
 
 
-class MessageInterval(NamedTuple):
+class MessageInterval(Message, frozen=True):
     """How often a message is sent [us]; -1 never, 0 not at all known here."""
 
     interval_us: int
     message_id: int
 
 
-class Statustext(NamedTuple):
+class Statustext(Message, frozen=True):
     """A line for a person (severity: MAV_SEVERITY), at most 50 bytes."""
 
     severity: int
@@ -245,7 +244,7 @@ class Statustext(NamedTuple):
     chunk_seq: int = 0
 
 
-STANDARD: dict[str, type[tuple[Any, ...]]] = {
+STANDARD: dict[str, type[Message]] = {
     "HEARTBEAT": Heartbeat,
     "SYS_STATUS": SysStatus,
     "SYSTEM_TIME": SystemTime,

@@ -87,7 +87,8 @@ def draw_replays(
     sampled = [message for heard in session for message in heard.measurements]
     times = [message.tick * Ts for message in sampled]
     for i, (axes, label) in enumerate(zip(figure.subplots(1, 3), AXES, strict=True)):
-        axes.plot(times, [message[i] for message in sampled], ".", markersize=1, label="measured")
+        measured = [message.pose[i] for message in sampled]
+        axes.plot(times, measured, ".", markersize=1, label="measured")
         for name, replayed in replays.items():
             axes.plot(replayed.ticks * Ts, replayed.estimates[:, i], label=name)
         if trace:

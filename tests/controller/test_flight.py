@@ -125,10 +125,10 @@ def test_the_station_reads_the_echoes_from_the_measurements():
         echo = Measurement(*pose, *force[0], k, force[1])
         answer = station.receive(robot.frame(echo) + robot.frame(Tick(k, 1)), datagram=True)
         estimate, command = (frame.message for frame in receiver.receive(answer))
-        sent.append((np.array(command[:2]), k))
+        sent.append((np.array(command.speeds), k))
         if k >= 2:
             force = sent[k - 2]
         if k > 5:
-            assert np.abs(np.array(estimate[:3]) - pose).max() < 1e-12
+            assert np.abs(np.array(estimate.pose) - pose).max() < 1e-12
         pose = model.f(pose, force[0])
     assert station.report()[:2] == (2, 0)

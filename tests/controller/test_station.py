@@ -73,7 +73,7 @@ def test_raw_sends_no_estimate_and_stands_still_until_the_first_measurement():
     assert robot.tick(0) == [Command(0, 0, 0, 1, 1, estimates=0)]
     pose = (-1.0, 2.0, 0.3)
     (command,) = robot.tick(1, (0, pose))
-    assert command[:2] == Law().drive(np.array(pose), at_goal=False)[:2]
+    assert command.speeds == Law().drive(np.array(pose), at_goal=False)[:2]
 
 
 def test_the_input_applied_is_the_command_sent_n_ticks_earlier():
@@ -83,8 +83,8 @@ def test_the_input_applied_is_the_command_sent_n_ticks_earlier():
         if k:
             x = model.f(x, np.array(sent[k - 1 - n]) if k - 1 - n >= 0 else np.zeros(2))
         estimate, command = robot.tick(k)
-        sent.append(command[:2])
-        assert estimate[:3] == pytest.approx(x, abs=1e-15)
+        sent.append(command.speeds)
+        assert estimate.pose == pytest.approx(x, abs=1e-15)
 
 
 @pytest.mark.parametrize("estimator", ["raw", "popf", "delayed-ekf"])
@@ -131,8 +131,8 @@ def test_after_lost_ticks_it_goes_on_from_the_present_one():
     estimate, _ = robot.tick(4)
     x = np.array(START)
     for _ in range(4):
-        x = model.f(x, np.array(command[:2]))
-    assert estimate[:3] == pytest.approx(x, abs=1e-15)
+        x = model.f(x, np.array(command.speeds))
+    assert estimate.pose == pytest.approx(x, abs=1e-15)
 
 
 def test_a_robot_that_is_under_way_is_stopped_and_taken_over_from_where_it_stands():
@@ -147,7 +147,7 @@ def test_a_robot_that_is_under_way_is_stopped_and_taken_over_from_where_it_stand
             break
     assert all((earlier.v, earlier.omega) == (0, 0) for earlier in sent[:-1])
     assert len(sent) == 100 + n + 1
-    assert estimates[0][:3] == pytest.approx(here, abs=0.05)
+    assert estimates[0].pose == pytest.approx(here, abs=0.05)
     assert sent[-1].v != 0
 
 

@@ -19,6 +19,7 @@ from laglab_protocol import (
     EndReason,
     Estimate,
     Measurement,
+    Message,
     Receiver,
     Sender,
     Tick,
@@ -46,7 +47,7 @@ class Station:
     def __init__(self, system: int = STATION_SYSTEM) -> None:
         self._sender = Sender(system, STATION_COMPONENT)
 
-    def say(self, *messages: tuple[object, ...]) -> bytes:
+    def say(self, *messages: Message) -> bytes:
         return b"".join(self._sender.frame(message) for message in messages)
 
 
@@ -54,7 +55,7 @@ def command(tick: int, v: float = 0.0, estimates: int = 0) -> Command:
     return Command(v, v / 2, tick, ROBOT_SYSTEM, ROBOT_COMPONENT, estimates)
 
 
-def heard(frames: list[bytes]) -> list[tuple[object, ...]]:
+def heard(frames: list[bytes]) -> list[Message]:
     return [frame.message for frame in Receiver().receive(b"".join(frames))]
 
 
@@ -77,7 +78,7 @@ def test_both_delays_are_exact(robot: Robot, n: int, m: int) -> None:
             assert z.tick == s
             assert z.command_tick == (s - 1 - n if s - 1 - n >= 0 else NO_COMMAND)
             if sample:
-                assert z[:3] == (sample.x_meas, sample.y_meas, sample.theta_meas)
+                assert z.pose == (sample.x_meas, sample.y_meas, sample.theta_meas)
             if s:
                 assert (z.v, z.omega) == (rows[s - 1].v, rows[s - 1].omega)
         gateway.receive(station.say(command(k, v=0.1 + k)), whole=True)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
+from msgspec.structs import replace
 
 from laglab_protocol import (
     NO_COMMAND,
@@ -111,7 +112,7 @@ def test_it_says_nothing_until_greeted_and_stands_still_until_commanded(line: Li
     assert all(later.tick == earlier.tick + 1 for earlier, later in pairwise(samples))
     assert {(each.v, each.omega, each.command_tick) for each in samples} == {(0, 0, NO_COMMAND)}
     for axis, there in enumerate((-3.0, -3.0, 0.0)):
-        mean = sum(sample[axis] for sample in samples) / len(samples)
+        mean = sum(sample.pose[axis] for sample in samples) / len(samples)
         assert mean == pytest.approx(there, abs=0.01)
 
 
@@ -127,7 +128,7 @@ def test_a_fresh_command_drives_it_by_equation_3(line: Line) -> None:
     begin(line)
     line.say(command(3, 0.5, 1.0))
     first, *_, last = line.samples_from(3, 30)
-    assert last[3:] == (0.5, 1.0, last.tick, 3)
+    assert (last.speeds, last.command_tick) == ((0.5, 1.0), 3)
     t = (last.tick - (first.tick - 1)) * 0.01
     assert last.theta == pytest.approx(t, abs=0.05)
     assert last.x == pytest.approx(-3 + 0.5 * math.sin(t), abs=0.05)
@@ -141,8 +142,8 @@ def test_a_fresh_command_drives_it_by_equation_3(line: Line) -> None:
         command(4, 1.0),
         command(10**6, math.nan),
         command(10**6, 1.0, math.inf),
-        command(10**6, 1.0)._replace(target_system=2),
-        command(10**6, 1.0)._replace(target_component=2),
+        replace(command(10**6, 1.0), target_system=2),
+        replace(command(10**6, 1.0), target_component=2),
     ],
     ids=["same", "stale", "nan", "infinite", "for another system", "for another component"],
 )

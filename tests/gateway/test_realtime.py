@@ -26,6 +26,7 @@ from laglab_protocol import (
     End,
     EndReason,
     Heartbeat,
+    Message,
     Receiver,
     Sender,
     Tick,
@@ -71,7 +72,7 @@ class SimulatedLink:
                 case End():
                     self._queue(0.0, frame.message)
 
-    def _queue(self, after: float, message: tuple[object, ...]) -> None:
+    def _queue(self, after: float, message: Message) -> None:
         self._inbox.append((self.time + after, self._sender.frame(message)))
 
     def receive(self, timeout: float) -> bytes:

@@ -34,7 +34,7 @@ with atheris.instrument_imports(include=["laglab_protocol", "laglab_gateway", "l
         Sender,
     )
     from laglab_protocol.dialect import dialect_path
-    from laglab_protocol.frame import Frame, encode
+    from laglab_protocol.frame import Frame
     from laglab_protocol.layout import LAYOUT_OF_ID
     from laglab_protocol.lint import lint
     from laglab_protocol.messages import Command, End, Estimate, Measurement, Tick
@@ -49,7 +49,8 @@ MESSAGES = [
     Command(0.5, -1.0, 30, 1, 1, 1),
     End(30, 0),
 ]
-STREAM = b"".join(encode(message, 1, 1, 0) for message in MESSAGES)
+SPEAKER = Sender(1, 1)
+STREAM = b"".join(SPEAKER.frame(message) for message in MESSAGES)
 STRANGER = Sender(1, 1, Signer(bytes(32), (0, 1, 1)))
 SIGNED_STREAM = b"".join(STRANGER.frame(message) for message in MESSAGES)
 DIALECT = dialect_path().read_bytes().replace(b"<include>common.xml</include>", b"")
@@ -71,7 +72,7 @@ def receiver(data: bytes) -> None:
     frames += under_test.end_datagram()
     assert under_test._rest == b""
     for frame in frames:
-        encode(frame.message, frame.system, frame.component, frame.sequence)
+        SPEAKER.frame(frame.message)
 
 
 def signed(data: bytes) -> None:

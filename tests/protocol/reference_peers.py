@@ -5,6 +5,8 @@ import time
 from pathlib import Path
 from typing import Self
 
+from msgspec.structs import replace
+
 from laglab_protocol import (
     NO_COMMAND,
     AutopilotVersion,
@@ -169,7 +171,7 @@ class Robot(Peer):
                 self.send(values[0 if index == 0 or self.fault != "mixes names up" else 1])
                 del name
             case Ping() if self.fault != "does not answer pings":
-                self.send(message._replace(target_system=200, target_component=190))
+                self.send(replace(message, target_system=200, target_component=190))
 
     def acknowledge(self, message: CommandLong) -> list[Message]:
         if message.command != 512:
@@ -207,7 +209,7 @@ class Controller(Peer):
             case End() if self.fault != "ignores END":
                 reason = 3 if self.fault == "gives another reason" else message.reason
                 times = 2 if self.fault == "says END twice" else 1
-                self.send(*[message._replace(reason=reason)] * times)
+                self.send(*[replace(message, reason=reason)] * times)
                 self.left.set()
 
     def hear_tick(self, message: Tick) -> None:

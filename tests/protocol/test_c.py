@@ -8,6 +8,7 @@ from pathlib import Path
 from string import Template
 
 import pytest
+from msgspec.structs import astuple
 
 from laglab_protocol.dialect import dialect_path, generate
 from laglab_protocol.generated import laglab as dialect
@@ -77,7 +78,7 @@ def lower_name(row: Golden) -> str:
 def declared_order(row: Golden) -> list[float]:
     """C's pack functions take the fields as the XML declares them."""
     generated = dialect.mavlink_map[layout_of(row.message).id]
-    return [row.message[i] for i in generated.orders]
+    return [astuple(row.message)[i] for i in generated.orders]
 
 
 def make_in_c(row: Golden) -> str:

@@ -1,4 +1,4 @@
-"""The committed Python, and our NamedTuples, are what the XML says."""
+"""The committed Python, and our classes, are what the XML says."""
 
 import tomllib
 from enum import IntEnum
@@ -33,7 +33,7 @@ def test_written_out_messages_are_the_xml_s(name: str) -> None:
     types = dict(zip(generated.fieldnames, generated.fieldtypes, strict=True))
     arrays = dict(zip(generated.ordered_fieldnames, generated.lengths, strict=True))
 
-    assert list(written._fields) == generated.ordered_fieldnames  # type: ignore[attr-defined]
+    assert list(written.__struct_fields__) == generated.ordered_fieldnames
     for field, annotation in written.__annotations__.items():
         expected = PYTHON_TYPE.get(types[field], int)
         assert annotation == (tuple[expected, ...] if arrays[field] > 1 else expected), field

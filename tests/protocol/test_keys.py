@@ -20,7 +20,6 @@ from laglab_protocol import (
     read_key,
     refuse_open_door,
 )
-from laglab_protocol.frame import SIGNED, encode
 from laglab_protocol.keys import StoredTimestamps
 from laglab_protocol.signing import AHEAD, CLOCK_EVERY, Signer, Verifier
 
@@ -121,9 +120,9 @@ def test_every_stream_is_kept_across_a_second_crash(tmp_path: Path) -> None:
 def test_our_own_timestamps_go_on_after_a_restart(tmp_path: Path) -> None:
     path = tmp_path / "timestamps"
     first = StoredTimestamps(path)
-    Signer(KEY, STREAM, first, clock=lambda: NOW).sign(encode(COMMAND, 200, 190, 0, SIGNED))
+    Sender(200, 190, Signer(KEY, STREAM, first, clock=lambda: NOW)).frame(COMMAND)
     again = StoredTimestamps(path)
-    raw = Signer(KEY, STREAM, again, clock=lambda: 0).sign(encode(COMMAND, 200, 190, 0, SIGNED))
+    raw = Sender(200, 190, Signer(KEY, STREAM, again, clock=lambda: 0)).frame(COMMAND)
 
     assert NOW < int.from_bytes(raw[-12:-6], "little") <= NOW + AHEAD + 1
     assert stat.S_IMODE(path.stat().st_mode) == 0o600

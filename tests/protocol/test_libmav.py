@@ -8,6 +8,7 @@ from typing import Any
 
 import libmav
 import pytest
+from msgspec.structs import asdict
 
 from laglab_protocol import Endpoint, Frame, Message, Receiver, Sender, open_endpoint
 from laglab_protocol.dialect import carried_dialects, dialect_path
@@ -42,7 +43,7 @@ class Libmav:
         return self.messages.create("HEARTBEAT").set_from_dict(fields | rest)
 
     def send(self, message: Message) -> None:
-        fields = message._asdict()  # type: ignore[attr-defined]
+        fields = asdict(message)
         self.connection.send(self.messages.create(layout_of(message).name).set_from_dict(fields))
 
 
@@ -78,7 +79,7 @@ def test_libmav_reads_these_fields(row: Golden, peer: Libmav, endpoint: Endpoint
     while (heard := peer.heard.get(timeout=5.0))["_name"] != wanted:
         pass
 
-    fields = row.message._asdict()  # type: ignore[attr-defined]
+    fields = asdict(row.message)
     assert {name: repr(heard[name]) for name in fields} == {
         name: repr(value) for name, value in fields.items()
     }

@@ -7,7 +7,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from laglab_protocol import Frame, Measurement, Message, Receiver, Refusal, Sender, Tick
-from laglab_protocol.frame import encode
 
 from .strategies import messages
 
@@ -127,7 +126,7 @@ def test_late_and_repeated_frames_are_no_losses() -> None:
 def test_counters_are_a_snapshot() -> None:
     receiver = Receiver()
     before = receiver.counters
-    receiver.receive(encode(Tick(1, 0), 1, 1, 0))
+    receiver.receive(Sender(1, 1).frame(Tick(1, 0)))
 
     assert before.frames == 0
     assert receiver.counters.frames == 1

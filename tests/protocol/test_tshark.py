@@ -53,7 +53,7 @@ def test_tshark_names_the_message_and_its_fields(dissected: list[str], index: in
     row, text = GOLDEN[index], dissected[index]
 
     assert layout_of(row.message).name in text
-    for field in row.message._fields:  # type: ignore[attr-defined]
+    for field in row.message.__struct_fields__:
         assert f"{field} (" in text, text
 
 

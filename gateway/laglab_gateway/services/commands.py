@@ -3,6 +3,8 @@
 import math
 from collections.abc import Callable
 
+from msgspec.structs import astuple
+
 from laglab_gateway.services.state import Arming
 from laglab_protocol import CommandAck, CommandInt, CommandLong, Frame, Message
 from laglab_protocol.generated import laglab as mavlink
@@ -45,7 +47,7 @@ class Commands:
         message = frame.message
         if not isinstance(message, CommandLong | CommandInt):
             return []
-        numbers = message[:7] if isinstance(message, CommandLong) else message[:4]
+        numbers = astuple(message)[: 7 if isinstance(message, CommandLong) else 4]
         handler = self._handlers.get(message.command)
         result, more = handler(numbers) if handler else (UNSUPPORTED, [])
         ack = CommandAck(message.command, result, 0, 0, frame.system, frame.component)

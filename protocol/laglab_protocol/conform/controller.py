@@ -8,6 +8,7 @@ from laglab_protocol.conform.framing import RECEIVING, SENDING, SIGNING
 from laglab_protocol.conform.items import Item, refused
 from laglab_protocol.conform.session import NoReactionError, Session
 from laglab_protocol.frame import Frame
+from laglab_protocol.message import Message
 from laglab_protocol.messages import (
     NO_COMMAND,
     ROBOT_COMPONENT,
@@ -19,7 +20,6 @@ from laglab_protocol.messages import (
     EndReason,
     Estimate,
     Measurement,
-    Message,
     Tick,
 )
 from laglab_protocol.standard import Heartbeat
@@ -49,17 +49,14 @@ class ControllerSession(Session):
     def go_on(self) -> None:
         self.tick += 1
 
-    def answer_to(self, *messages: Message) -> list[Message]:
+    def answer_to(self, *messages: Message) -> list[Estimate | Command]:
         """What came back, up to the command, for these in one datagram. Raises NoReactionError."""
         before = len(self.heard)
         self.send(*messages)
         if self.listen(self.patience.react, lambda frame: isinstance(frame.message, Command)):
-            return [frame.message for frame in self.heard[before:] if _is_answer(frame)]
+            came = [frame.message for frame in self.heard[before:]]
+            return [message for message in came if isinstance(message, Estimate | Command)]
         raise NoReactionError(f"no answer to {messages[-1]}")
-
-
-def _is_answer(frame: Frame) -> bool:
-    return isinstance(frame.message, Estimate | Command)
 
 
 def _sample(tick: int) -> Measurement:
@@ -79,7 +76,7 @@ def _answers_whole(session: ControllerSession) -> str | None:
         *estimates, command = session.answer_to(_sample(tick), Tick(tick, 1))
         session.go_on()
         assert isinstance(command, Command)
-        if command.tick != tick or any(each[-1] != tick for each in estimates):
+        if command.tick != tick or any(each.tick != tick for each in estimates):
             return f"tick {tick} is answered with other stamps: {command}"
         if command.estimates != len(estimates):
             return f"the command tells of {command.estimates} estimates, {len(estimates)} came"
@@ -88,14 +85,18 @@ def _answers_whole(session: ControllerSession) -> str | None:
 
 def _aims(session: ControllerSession) -> str | None:
     for frame in session.heard:
-        if isinstance(frame.message, Command) and frame.message[3:5] != (1, 1):
-            return f"a command is meant for {frame.message[3:5]}, the robot is (1, 1)"
+        if isinstance(frame.message, Command) and _target(frame.message) != (1, 1):
+            return f"a command is meant for {_target(frame.message)}, the robot is (1, 1)"
     return None
+
+
+def _target(command: Command) -> tuple[int, int]:
+    return command.target_system, command.target_component
 
 
 def _finite(session: ControllerSession) -> str | None:
     for frame in session.heard:
-        if isinstance(frame.message, Command) and not all(map(math.isfinite, frame.message[:2])):
+        if isinstance(frame.message, Command) and not all(map(math.isfinite, frame.message.speeds)):
             return f"{frame.message}"
     return None
 

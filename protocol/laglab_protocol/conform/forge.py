@@ -4,10 +4,11 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 from fastcrc import crc16
+from msgspec.structs import astuple
 
 from laglab_protocol.frame import SIGNED, START
 from laglab_protocol.layout import layout_of
-from laglab_protocol.messages import Message
+from laglab_protocol.message import Message
 from laglab_protocol.signing import Signer
 
 
@@ -32,7 +33,7 @@ class Forged:
     ) -> Self:
         """The usual frame of `message`, signed if there is a signer."""
         layout = layout_of(message)
-        whole = layout.pack(*message)
+        whole = layout.pack(*astuple(message))
         payload = whole.rstrip(b"\0") or b"\0"
         flags = SIGNED if signer else 0
         return cls(
@@ -66,5 +67,4 @@ class Forged:
         )
         body = header + self.payload
         crc = crc16.mcrf4xx(body[1:] + self.crc_extra) ^ self.crc_flip
-        frame = body + crc.to_bytes(2, "little")
-        return self.signer.sign(frame) if self.signer else frame
+        return self.signer.sign(body, crc) if self.signer else body + crc.to_bytes(2, "little")

@@ -9,6 +9,7 @@ from laglab_protocol.conform.items import Item, refused
 from laglab_protocol.conform.session import NoReactionError, Session
 from laglab_protocol.frame import Frame
 from laglab_protocol.generated import laglab as mavlink
+from laglab_protocol.message import Message
 from laglab_protocol.messages import (
     NO_COMMAND,
     ROBOT_COMPONENT,
@@ -19,7 +20,6 @@ from laglab_protocol.messages import (
     End,
     EndReason,
     Measurement,
-    Message,
     Tick,
 )
 from laglab_protocol.standard import (
@@ -33,6 +33,8 @@ from laglab_protocol.standard import (
     ParamValue,
     Ping,
 )
+
+Batch = list[Measurement]
 
 NO_SUCH_COMMAND = 65_000
 SOON = 0.25
@@ -111,35 +113,36 @@ def _repeats(session: RobotSession) -> str | None:
         frame = session.listen(session.patience.react, _is_tick)
         if frame is None:
             return f"tick {session.tick} is not repeated"
-        if frame.message[0] != session.tick:
-            return f"tick {frame.message[0]} came, though nobody answered {session.tick}"
+        assert isinstance(frame.message, Tick)
+        if frame.message.tick != session.tick:
+            return f"tick {frame.message.tick} came, though nobody answered {session.tick}"
     return None
 
 
 def _repeats_the_same(session: RobotSession) -> str | None:
-    said: dict[int, tuple[Message, ...]] = {}
-    for tick, messages in _batches(session):
-        if said.setdefault(tick, messages) != messages:
-            return f"tick {tick} is repeated with other messages"
+    said: dict[int, tuple[Batch, Tick]] = {}
+    for batch, last in _batches(session):
+        if said.setdefault(last.tick, (batch, last)) != (batch, last):
+            return f"tick {last.tick} is repeated with other messages"
     return None
 
 
-def _batches(session: RobotSession) -> list[tuple[int, tuple[Message, ...]]]:
+def _batches(session: RobotSession) -> list[tuple[Batch, Tick]]:
     """Every tick with the measurements that came since the one before."""
-    batches, waiting = [], list[Message]()
+    batches, waiting = [], Batch()
     for frame in session.heard:
         if isinstance(frame.message, Measurement):
             waiting.append(frame.message)
         elif isinstance(frame.message, Tick):
-            batches.append((frame.message.tick, (*waiting, frame.message)))
-            waiting = []
+            batches.append((waiting, frame.message))
+            waiting = Batch()
     return batches
 
 
 def _counts(session: RobotSession) -> str | None:
-    for tick, (*measurements, last) in _batches(session):
-        if len(measurements) != last[1]:
-            return f"tick {tick} tells of {last[1]} measurements, {len(measurements)} came"
+    for batch, last in _batches(session):
+        if len(batch) != last.measurements:
+            return f"{last} came after {len(batch)} measurements"
     return None
 
 

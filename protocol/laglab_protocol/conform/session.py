@@ -10,7 +10,7 @@ from laglab_protocol.conform.forge import Forged
 from laglab_protocol.endpoints import Endpoint
 from laglab_protocol.frame import Frame
 from laglab_protocol.keys import read_key
-from laglab_protocol.messages import Message
+from laglab_protocol.message import Message
 from laglab_protocol.receiver import Receiver
 from laglab_protocol.signing import Signer, Verifier
 
