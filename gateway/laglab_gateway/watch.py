@@ -6,17 +6,18 @@ from time import monotonic_ns
 from typing import NamedTuple
 
 from laglab_gateway.services import RobotState, Services
-from laglab_protocol import Codec, Endpoint, EndpointError, Message
+from laglab_protocol import Endpoint, EndpointError, Message, Receiver, Sender
 
 POLL_US = 20_000
 """How often they are looked after; in between the loop is not held up for them."""
 
 
 class Watcher(NamedTuple):
-    """One link, and the frames that go over it."""
+    """One link, and who makes and reads the frames on it."""
 
     endpoint: Endpoint
-    codec: Codec
+    sender: Sender
+    receiver: Receiver
 
 
 class Watch:
@@ -49,7 +50,7 @@ class Watch:
         for watcher in self._watchers:
             with self._letting_go(watcher):
                 for message in messages:
-                    watcher.endpoint.send(watcher.codec.sender.frame(message))
+                    watcher.endpoint.send(watcher.sender.frame(message))
 
     def take_lost(self) -> list[str]:
         """The links of those let go since the last call."""
@@ -65,8 +66,7 @@ class Watch:
             self._lost.append(watcher.endpoint.name)
 
     def _hear(self, watcher: Watcher, state: RobotState) -> None:
-        endpoint, codec = watcher
-        sender, receiver = codec.sender, codec.receiver
+        endpoint, sender, receiver = watcher
         while data := endpoint.receive(0.0):
             frames = receiver.receive(data)
             if endpoint.datagrams:

@@ -1,5 +1,6 @@
 """The key file, and what has been said with the key, kept across restarts."""
 
+import itertools
 import json
 import os
 import secrets
@@ -11,8 +12,6 @@ from laglab_protocol.errors import KeyFileError, UnsignedLinkError
 from laglab_protocol.receiver import Receiver
 from laglab_protocol.sender import Sender
 from laglab_protocol.signing import AHEAD, KEY_SIZE, Signer, Stream, Timestamps, Verifier
-
-LINK_ID = 0
 
 
 def make_key(path: Path) -> None:
@@ -110,22 +109,22 @@ class Codec:
     A context manager: at its end the last timestamps are on disk.
     """
 
-    def __init__(
-        self,
-        system: int,
-        component: int,
-        key_file: Path | None = None,
-        allow_unsigned: frozenset[str] = frozenset(),
-    ) -> None:
+    def __init__(self, system: int, component: int, key_file: Path | None = None) -> None:
+        self._speaker = system, component
+        self._key = read_key(key_file) if key_file else None
         self._timestamps = Timestamps()
-        signer = verifier = None
-        if key_file is not None:
-            key = read_key(key_file)
+        if key_file:
             self._timestamps = StoredTimestamps(timestamps_path(key_file, system, component))
-            signer = Signer(key, (LINK_ID, system, component), self._timestamps)
-            verifier = Verifier(key, self._timestamps, allow_unsigned)
-        self.sender = Sender(system, component, signer)
-        self.receiver = Receiver(verifier)
+        self._link_ids = itertools.count()
+        self.sender, self.receiver = self.on_another_link()
+
+    def on_another_link(self) -> tuple[Sender, Receiver]:
+        """For one more link: frames are numbered apart there; what was said on any is known."""
+        link_id = next(self._link_ids)
+        if self._key is None:
+            return Sender(*self._speaker), Receiver()
+        signer = Signer(self._key, (link_id, *self._speaker), self._timestamps)
+        return Sender(*self._speaker, signer), Receiver(Verifier(self._key, self._timestamps))
 
     def close(self) -> None:
         self._timestamps.close()

@@ -55,11 +55,12 @@ class Setup:
     plant: str | None = None
     """The address of the real robot; None: the FMU."""
     key: Path | None = None
-    """The file of the key that signs every frame between gateway and station."""
+    """The file of the key that signs every frame of the gateway and of those who speak to it."""
     armed: bool = True
     """Whether the robot may move before a ground station says so."""
     unsigned: bool = False
-    """Whether strangers may reach the real robot's own link, which is never signed."""
+    """Whether strangers may reach the real robot's own link, which is never signed, and those
+    who watch need no key."""
 
 
 def robot_parameters(scenario: Scenario) -> laglab_fmu.RobotParameters:
@@ -120,14 +121,11 @@ def robot_services(
 
 @contextmanager
 def open_gateway(
-    scenario: Scenario, key: Path | None = None, armed: bool = True
+    scenario: Scenario, codec: Codec | None = None, armed: bool = True
 ) -> Iterator[Gateway]:
-    """The robot's side, its FMU loaded until the context ends; its frames signed with a key."""
+    """The robot's side, its FMU loaded until the context ends; no codec: nothing is signed."""
     parameters = robot_parameters(scenario)
-    with (
-        laglab_fmu.Robot.open(scenario.fmi, parameters) as robot,
-        Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, key) as codec,
-    ):
+    with laglab_fmu.Robot.open(scenario.fmi, parameters) as robot:
         plant = FmuPlant(robot, parameters)
         free_running = scenario.pace == "realtime"
         services = robot_services(scenario, free_running, armed=armed)
@@ -160,9 +158,13 @@ def serve(
     patience: Patience,
     progress: Callable[[int], None],
     watchers: Sequence[Endpoint] = (),
+    watch_codec: Codec | None = None,
 ) -> tuple[Outcome, dict[str, Any]]:
-    """Run the robot's side at the scenario's pace: how it ended, and what the stamps tell."""
-    watch = _watch(gateway.services, watchers)
+    """Run the robot's side at the scenario's pace: how it ended, and what the stamps tell.
+
+    Without a `watch_codec` the watchers' frames are not signed.
+    """
+    watch = _watch(gateway.services, watchers, watch_codec)
     if scenario.pace == "lockstep":
         outcome = serve_lockstep(gateway, endpoint, recorder, patience, progress, watch)
         return outcome, {"link": gateway.audit.report()}
@@ -174,9 +176,9 @@ def serve(
     return outcome, {"link": link, "timing": lateness.report()}
 
 
-def _watch(services: Services, watchers: Sequence[Endpoint]) -> Watch:
-    codecs = (Codec(ROBOT_SYSTEM, ROBOT_COMPONENT) for _ in watchers)
-    return Watch(services, list(map(Watcher, watchers, codecs)))
+def _watch(services: Services, watchers: Sequence[Endpoint], codec: Codec | None) -> Watch:
+    codec = codec or Codec(ROBOT_SYSTEM, ROBOT_COMPONENT)
+    return Watch(services, [Watcher(each, *codec.on_another_link()) for each in watchers])
 
 
 def clock_audit(services: Services) -> dict[str, float] | None:
@@ -204,11 +206,12 @@ def serve_real(
     patience: Patience,
     progress: Callable[[int], None],
     watchers: Sequence[Endpoint] = (),
+    watch_codec: Codec | None = None,
 ) -> tuple[Outcome, dict[str, Any]]:
     """Be the link in front of a real robot, at its own pace; as `serve`."""
     services = robot_services(scenario, free_running=True, placeable=False, armed=armed)
     relay = Relay(gateway_config(scenario), services, link_fates(scenario), codec)
-    watch = _watch(services, watchers)
+    watch = _watch(services, watchers, watch_codec)
     outcome = serve_remote(relay, robot, endpoint, recorder, patience, progress, watch)
     return outcome, {"link": relay.audit.report() | {"timesync": clock_audit(services)}}
 
@@ -219,14 +222,13 @@ Serve = Callable[..., tuple[Outcome, dict[str, Any]]]
 
 @contextmanager
 def open_robot(scenario: Scenario, setup: Setup) -> Iterator[Serve]:
-    """The robot's side: the FMU, or the real robot."""
-    if setup.plant is None:
-        with open_gateway(scenario, setup.key, setup.armed) as gateway:
-            yield partial(serve, scenario, gateway)
-    else:
-        with (
-            open_endpoint(setup.plant) as robot,
-            Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, setup.key) as codec,
-        ):
-            refuse_open_door(robot, None, setup.unsigned)
-            yield partial(serve_real, scenario, robot, codec, setup.armed)
+    """The robot's side: the FMU, or the real robot; open until the context ends."""
+    with Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, setup.key) as codec:
+        watched = None if setup.unsigned else codec
+        if setup.plant is None:
+            with open_gateway(scenario, codec, setup.armed) as gateway:
+                yield partial(serve, scenario, gateway, watch_codec=watched)
+        else:
+            with open_endpoint(setup.plant) as robot:
+                refuse_open_door(robot, None, setup.unsigned)
+                yield partial(serve_real, scenario, robot, codec, setup.armed, watch_codec=watched)

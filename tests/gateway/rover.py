@@ -24,7 +24,7 @@ from laglab_gateway import (
     serve_lockstep,
     standard_parameters,
 )
-from laglab_protocol import ROBOT_COMPONENT, ROBOT_SYSTEM, Codec, open_endpoint
+from laglab_protocol import ROBOT_COMPONENT, ROBOT_SYSTEM, Receiver, Sender, open_endpoint
 
 START = (-3.0, -2.0, 0.0)
 PARAMETERS = RobotParameters(start=START, noise=False)
@@ -62,8 +62,8 @@ def main(url: str) -> None:
     config = GatewayConfig(0, 0, FOREVER, PARAMETERS.sample_time)
     with Robot.open(3, PARAMETERS) as robot, open_endpoint(url) as endpoint:
         gateway = Gateway(FmuPlant(robot, PARAMETERS), config, services=services)
-        watch = Watch(services, [Watcher(endpoint, Codec(ROBOT_SYSTEM, ROBOT_COMPONENT))])
-        link = InlineEndpoint(station())
+        watcher = Watcher(endpoint, Sender(ROBOT_SYSTEM, ROBOT_COMPONENT), Receiver())
+        watch, link = Watch(services, [watcher]), InlineEndpoint(station())
         serve_lockstep(gateway, link, NoRecorder(), Patience(), progress=_breathe, watch=watch)
 
 

@@ -143,11 +143,15 @@ def stack() -> Iterator[ExitStack]:
         yield opened
 
 
+def watcher(endpoint: Endpoint) -> Watcher:
+    return Watcher(endpoint, *Codec(ROBOT_SYSTEM, ROBOT_COMPONENT).on_another_link())
+
+
 def test_a_watcher_sees_and_asks_but_does_not_drive(robot: Robot, stack: ExitStack) -> None:
     gateway = gateway_of(robot)
     ours = stack.enter_context(open_endpoint("udpin://127.0.0.1:0"))
     theirs = stack.enter_context(open_endpoint(ours.name.replace("udpin", "udpout")))
-    watch = Watch(gateway.services, [Watcher(ours, Codec(ROBOT_SYSTEM, ROBOT_COMPONENT))])
+    watch = Watch(gateway.services, [watcher(ours)])
     gateway.open_tick()
     sender = station()
     theirs.send(sender.frame(Command(1.0, 0.0, 0, 1, 1, 0)) + sender.frame(request(512, 32.0)))
@@ -173,7 +177,7 @@ def test_a_watcher_that_stops_reading_is_let_go(
     monkeypatch.setattr(tty, "STALL_TIMEOUT", 0.01)
     gateway = gateway_of(robot)
     line = stack.enter_context(open_endpoint(f"pty://{tmp_path / 'watch'}"))
-    watch = Watch(gateway.services, [Watcher(line, Codec(ROBOT_SYSTEM, ROBOT_COMPONENT))])
+    watch = Watch(gateway.services, [watcher(line)])
     for _ in range(3000):
         watch.tell([Heartbeat(0, 10, 0, 0, 4, 3)])
 

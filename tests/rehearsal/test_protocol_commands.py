@@ -5,10 +5,13 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
+from pymavlink import mavutil
 
 from laglab.robot_side import shown_parameters
 from laglab.scenario import Scenario
@@ -154,3 +157,46 @@ def test_a_disarmed_robot_moves_when_a_ground_station_arms_it(
         deadline = time.monotonic() + 20
         while position(link) == (-3.0, -3.0):
             assert time.monotonic() < deadline, "armed, but it does not move"
+
+
+def ground_station(port: str, key: bytes | None) -> Any:
+    """pymavlink's own, which signs with a key; it has said that it is there."""
+    link: Any = mavutil.mavlink_connection(f"udpout:127.0.0.1:{port}", source_system=255)
+    if key:
+        link.setup_signing(key)
+    link.mav.heartbeat_send(6, 8, 0, 0, 4)
+    return link
+
+
+@pytest.mark.parametrize(
+    ("options", "signs", "seen"),
+    [
+        (("--key",), True, True),
+        (("--key",), False, False),
+        (("--unsigned", "--key"), False, True),
+    ],
+    ids=["signed", "without the key", "without the key, in so many words"],
+)
+def test_with_a_key_watchers_need_it_too(
+    start: Start,
+    listening_port: ListeningPort,
+    key: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    options: tuple[str, ...],
+    signs: bool,
+    seen: bool,
+) -> None:
+    monkeypatch.setenv("MAVLINK20", "1")
+    mavutil.set_dialect("common")
+    urls = ("--watch", "udpin://127.0.0.1:0", "--endpoint", "udpin://127.0.0.1:0")
+    gateway = start("gateway", "fig4", *urls, *options, key)
+    _, watched = listening_port(gateway), listening_port(gateway)
+    secret = bytes.fromhex((tmp_path / key).read_text()) if signs else None
+    with closing(ground_station(watched, secret)) as link:
+        link.mav.command_long_send(1, 1, 400, 0, 1.0, 0, 0, 0, 0, 0, 0)
+        ack = link.recv_match(type="COMMAND_ACK", blocking=True, timeout=5.0 if seen else 1.0)
+
+    assert (ack is not None) == seen
+    if ack is not None:
+        assert bool(ack.get_signed()) == signs

@@ -23,7 +23,11 @@ ENDPOINT_HELP = "udpin://HOST:PORT, udpout://HOST:PORT, serial:///dev/ttyX:BAUD 
 
 UnsignedOption = Annotated[
     bool,
-    typer.Option("--unsigned", help="Let anybody who can reach the endpoints move the robot."),
+    typer.Option(
+        "--unsigned",
+        help="Let anybody who can reach the endpoints move the robot; "
+        "with --key those who watch, who may arm and stop it.",
+    ),
 ]
 
 
@@ -56,11 +60,11 @@ def gateway(
         open_robot(scenario, Setup(plant, key, not disarmed, unsigned)) as serve,
         closing(FileRecorder(out) if out else NoRecorder()) as recorder,
         open_endpoint(endpoint) as link,
-        _watchers(watch or [], unsigned) as watchers,
+        _opened(watch or []) as watched,
         short_pauses(),
     ):
-        refuse_open_door(link, key, unsigned)
-        for each in (link, *watchers):
+        for each in (link, *watched):
+            refuse_open_door(each, key, unsigned)
             console.print(f"listening on {each.name}", highlight=False, soft_wrap=True)
         with progress_bar() as bar:
             task = bar.add_task(scenario.name, total=scenario.last_tick)
@@ -69,20 +73,16 @@ def gateway(
                 recorder,
                 Patience(silence=scenario.silence_timeout),
                 lambda tick: bar.update(task, completed=tick),
-                watchers,
+                watched,
             )
     console.print(f"{outcome.reason.name.lower()} at tick {outcome.tick}", highlight=False)
     raise typer.Exit(EXIT_CODES[outcome.reason])
 
 
 @contextmanager
-def _watchers(urls: Sequence[str], unsigned: bool) -> Iterator[list[Endpoint]]:
-    """Links of their own, unsigned: on this machine only, unless told otherwise."""
+def _opened(urls: Sequence[str]) -> Iterator[list[Endpoint]]:
     with ExitStack() as stack:
-        watchers = [stack.enter_context(open_endpoint(url)) for url in urls]
-        for watcher in watchers:
-            refuse_open_door(watcher, None, unsigned)
-        yield watchers
+        yield [stack.enter_context(open_endpoint(url)) for url in urls]
 
 
 @on_scenario
