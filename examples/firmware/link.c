@@ -1,5 +1,8 @@
 #include "link.h"
 
+#include <stdbool.h>
+#include <string.h>
+
 #include <laglab/mavlink.h>
 
 enum { ROBOT_SYSTEM = 1, STATION_SYSTEM = 200 };
@@ -15,26 +18,68 @@ static LinkEvent command_of(const mavlink_message_t *message) {
     return (LinkEvent){.kind = LINK_COMMAND, .command = {command.v, command.omega, (int32_t)command.tick}};
 }
 
-LinkEvent link_read(uint8_t byte) {
-    mavlink_message_t message;
-    mavlink_status_t status;
+static LinkEvent request_of(uint8_t system, uint8_t component, uint16_t number) {
+    const bool ours = (system == ROBOT_SYSTEM || system == 0) && (component == ROBOT_COMPONENT || component == 0);
+    return ours ? (LinkEvent){.kind = LINK_REQUEST, .request = number} : (LinkEvent){.kind = LINK_NOTHING};
+}
+
+static LinkEvent event_of(const mavlink_message_t *message) {
     const LinkEvent nothing = {.kind = LINK_NOTHING};
-    if (!mavlink_parse_char(MAVLINK_COMM_0, byte, &message, &status)) {
+    if (message->sysid != STATION_SYSTEM || message->compid != STATION_COMPONENT) {
         return nothing;
     }
-    if (message.sysid != STATION_SYSTEM || message.compid != STATION_COMPONENT) {
-        return nothing;
-    }
-    switch (message.msgid) {
+    switch (message->msgid) {
     case MAVLINK_MSG_ID_HEARTBEAT:
         return (LinkEvent){.kind = LINK_BEGIN};
     case MAVLINK_MSG_ID_LAGLAB_COMMAND:
-        return command_of(&message);
+        return command_of(message);
+    case MAVLINK_MSG_ID_COMMAND_LONG:
+        return request_of(mavlink_msg_command_long_get_target_system(message),
+                          mavlink_msg_command_long_get_target_component(message),
+                          mavlink_msg_command_long_get_command(message));
+    case MAVLINK_MSG_ID_COMMAND_INT:
+        return request_of(mavlink_msg_command_int_get_target_system(message),
+                          mavlink_msg_command_int_get_target_component(message),
+                          mavlink_msg_command_int_get_command(message));
     case MAVLINK_MSG_ID_LAGLAB_END:
-        return (LinkEvent){.kind = LINK_END, .reason = mavlink_msg_laglab_end_get_reason(&message)};
+        return (LinkEvent){.kind = LINK_END, .reason = mavlink_msg_laglab_end_get_reason(message)};
     default:
         return nothing;
     }
+}
+
+/* The bytes from the start of what may be a frame on, and how many of them mavgen's parser has seen. On a false start
+ * it would pass over as many bytes as the frame claims to have; so they are kept, and shown to it again. */
+static uint8_t held[MAVLINK_MAX_PACKET_LEN];
+static size_t holding, shown;
+
+static void drop(size_t count) {
+    memmove(held, held + count, holding - count);
+    holding -= count;
+    shown = 0;
+}
+
+void link_take(uint8_t byte) {
+    held[holding++] = byte;
+}
+
+LinkEvent link_next(void) {
+    mavlink_message_t message;
+    mavlink_status_t status;
+    while (shown < holding) {
+        const uint8_t found = mavlink_frame_char(MAVLINK_COMM_0, held[shown++], &message, &status);
+        if (found == MAVLINK_FRAMING_OK) {
+            drop(shown);
+            const LinkEvent event = event_of(&message);
+            if (event.kind != LINK_NOTHING) {
+                return event;
+            }
+        } else if (found != MAVLINK_FRAMING_INCOMPLETE || status.parse_state == MAVLINK_PARSE_STATE_IDLE) {
+            mavlink_reset_channel_status(MAVLINK_COMM_0);
+            drop(1);
+        }
+    }
+    return (LinkEvent){.kind = LINK_NOTHING};
 }
 
 size_t link_write_tick(uint8_t *buffer, uint32_t tick, Pose seen, Command in_force) {
@@ -44,6 +89,13 @@ size_t link_write_tick(uint8_t *buffer, uint32_t tick, Pose seen, Command in_for
     const size_t size = mavlink_msg_to_send_buffer(buffer, &message);
     mavlink_msg_laglab_tick_pack(ROBOT_SYSTEM, ROBOT_COMPONENT, &message, tick, 1);
     return size + mavlink_msg_to_send_buffer(buffer + size, &message);
+}
+
+size_t link_write_refusal(uint8_t *buffer, uint16_t request) {
+    mavlink_message_t message;
+    mavlink_msg_command_ack_pack(ROBOT_SYSTEM, ROBOT_COMPONENT, &message, request, MAV_RESULT_UNSUPPORTED, 0, 0,
+                                 STATION_SYSTEM, STATION_COMPONENT);
+    return mavlink_msg_to_send_buffer(buffer, &message);
 }
 
 size_t link_write_end(uint8_t *buffer, uint32_t tick, uint8_t reason) {

@@ -12,16 +12,23 @@
 
 /* What a station can ask of the robot. */
 typedef struct {
-    enum { LINK_NOTHING, LINK_BEGIN, LINK_COMMAND, LINK_END } kind;
+    enum { LINK_NOTHING, LINK_BEGIN, LINK_COMMAND, LINK_REQUEST, LINK_END } kind;
     Command command;
-    uint8_t reason; /* of an end */
+    uint16_t request; /* a MAV_CMD */
+    uint8_t reason;   /* of an end */
 } LinkEvent;
 
-/* Take one byte; what it completes, mostly nothing. */
-LinkEvent link_read(uint8_t byte);
+/* Take one byte, after link_next has given LINK_NOTHING. */
+void link_take(uint8_t byte);
+
+/* What the bytes taken so far complete, one by one, then LINK_NOTHING. */
+LinkEvent link_next(void);
 
 /* The frames of one tick, in one piece: z_k with the command in force before it, and the tick. Their size. */
 size_t link_write_tick(uint8_t *buffer, uint32_t tick, Pose seen, Command in_force);
+
+/* The answer to a request: this robot knows none. Its size. */
+size_t link_write_refusal(uint8_t *buffer, uint16_t request);
 
 /* The answer to an end. Its size. */
 size_t link_write_end(uint8_t *buffer, uint32_t tick, uint8_t reason);

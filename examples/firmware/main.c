@@ -46,6 +46,8 @@ static bool send(const Robot *robot, const uint8_t *data, size_t size) {
 static bool obey(Robot *robot, LinkEvent event) {
     uint8_t buffer[LINK_LARGEST];
     switch (event.kind) {
+    case LINK_REQUEST:
+        return send(robot, buffer, link_write_refusal(buffer, event.request));
     case LINK_BEGIN:
         if (!robot->running) {
             robot->running = true;
@@ -72,8 +74,12 @@ static bool receive(Robot *robot) {
     ssize_t size;
     while ((size = read(robot->port, data, sizeof data)) > 0) {
         for (ssize_t i = 0; i < size; i++) {
-            if (!obey(robot, link_read(data[i]))) {
-                return false;
+            LinkEvent event;
+            link_take(data[i]);
+            while ((event = link_next()).kind != LINK_NOTHING) {
+                if (!obey(robot, event)) {
+                    return false;
+                }
             }
         }
     }

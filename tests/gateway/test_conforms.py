@@ -2,8 +2,9 @@
 
 import threading
 from collections.abc import Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -14,8 +15,8 @@ from laglab_gateway import (
     GatewayConfig,
     NoRecorder,
     Patience,
-    Watch,
     serve_lockstep,
+    serve_realtime,
 )
 from laglab_protocol import (
     ROBOT_COMPONENT,
@@ -25,7 +26,8 @@ from laglab_protocol import (
     make_key,
     open_endpoint,
 )
-from laglab_protocol.conform import conform
+from laglab_protocol.conform import Pace, conform
+from laglab_protocol.conform import Patience as Quick
 
 PARAMETERS = RobotParameters(start=(-3.0, -2.0, 0.0), noise=True)
 
@@ -36,34 +38,59 @@ def stack() -> Iterator[ExitStack]:
         yield opened
 
 
-def serve(endpoint: Endpoint, key_file: Path | None) -> None:
-    config = GatewayConfig(3, 5, 10**6, PARAMETERS.sample_time)
+def serve(endpoint: Endpoint, key_file: Path | None, pace: Pace, ticks: int = 10**6) -> None:
+    config = GatewayConfig(3, 5, ticks, PARAMETERS.sample_time)
     with (
         Robot.open(3, PARAMETERS) as robot,
         Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, key_file) as codec,
     ):
         gateway = Gateway(FmuPlant(robot, PARAMETERS), config, codec=codec)
-        watch, patience = Watch(gateway.services, []), Patience(0.05, 3.0, 5.0)
-        serve_lockstep(
-            gateway, endpoint, NoRecorder(), patience, progress=lambda _: None, watch=watch
-        )
+        talk = gateway, endpoint, NoRecorder(), Patience(0.05, 3.0, 5.0), ignore
+        if pace == "lockstep":
+            serve_lockstep(*talk)
+        else:
+            serve_realtime(*talk, PARAMETERS.sample_time)
+
+
+def ignore(_: int) -> None:
+    """Of the progress."""
+
+
+@contextmanager
+def served(endpoint: Endpoint, *how: Any) -> Iterator[str]:
+    """The robot in a thread of its own; the address to reach it at."""
+    robot = threading.Thread(target=serve, args=(endpoint, *how))
+    robot.start()
+    try:
+        yield endpoint.name.replace("udpin", "udpout").replace("pty", "serial")
+    finally:
+        robot.join()
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("signed", [False, True], ids=["unsigned", "signed"])
-@pytest.mark.parametrize("line", ["udp", "serial"])
-def test_our_robot_conforms(stack: ExitStack, tmp_path: Path, line: str, signed: bool) -> None:
+@pytest.mark.parametrize(
+    ("line", "pace"), [("udp", "lockstep"), ("serial", "lockstep"), ("udp", "realtime")]
+)
+def test_our_robot_conforms(
+    stack: ExitStack, tmp_path: Path, line: str, pace: Pace, signed: bool
+) -> None:
     key_file = tmp_path / "key" if signed else None
     if key_file:
         make_key(key_file)
     pty = f"pty://{tmp_path / 'robot'}"
     endpoint = stack.enter_context(open_endpoint("udpin://:0" if line == "udp" else pty))
-    url = endpoint.name.replace("udpin", "udpout").replace("pty", "serial")
-    robot = threading.Thread(target=serve, args=(endpoint, key_file))
-    robot.start()
-    try:
-        report = conform(url if line == "udp" else f"{url}:57600", "robot", key_file)
-    finally:
-        robot.join()
+    with served(endpoint, key_file, pace) as url:
+        at = url if line == "udp" else f"{url}:57600"
+        report = conform(at, "robot", key_file, pace=pace)
 
     assert report.failed == [], report.table()
+
+
+def test_a_run_that_ends_too_soon_is_told_from_a_robot_that_is_deaf(stack: ExitStack) -> None:
+    endpoint = stack.enter_context(open_endpoint("udpin://:0"))
+    with served(endpoint, None, "lockstep", 3) as url:
+        report = conform(url, "robot", None, Quick(3.0, 0.2, 0.02))
+
+    assert not report.conforms
+    assert "its run had ended at tick 3: let it run longer" in report.table()

@@ -1,6 +1,7 @@
 """The robot in C, spoken to over a pty by a station made of the codec alone."""
 
 import math
+import threading
 import time
 from collections.abc import Callable, Iterator
 from itertools import pairwise
@@ -28,6 +29,7 @@ from laglab_protocol import (
     Tick,
     open_endpoint,
 )
+from laglab_protocol.conform import Patience, conform
 
 SPEED = 4.0
 PERIOD = 0.01 / SPEED
@@ -85,6 +87,18 @@ def line(start: Callable[..., Any], firmware: Path, tmp_path: Path) -> Iterator[
         yield Line(endpoint, Sender(STATION_SYSTEM, STATION_COMPONENT), Receiver())
     assert robot.wait(5) == 1
     assert "the far end is gone" in robot.stderr.read()
+
+
+@pytest.mark.slow
+def test_it_conforms(start: Callable[..., Any], firmware: Path, tmp_path: Path) -> None:
+    """Though mavgen's parser passes over what follows a false start: the firmware looks again."""
+    opened = threading.Timer(0.5, lambda: start(firmware, "--speed", SPEED, tmp_path / "port"))
+    opened.start()
+    patience = Patience(react=1.0, refuse=0.1)
+    report = conform(f"pty://{tmp_path}/port", "robot", None, patience, "realtime")
+    opened.join()
+
+    assert report.conforms, report.table()
 
 
 def begin(line: Line) -> Measurement:

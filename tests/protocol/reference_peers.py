@@ -1,5 +1,6 @@
 """A small robot and a small controller that keep the rules, each with one fault if told so."""
 
+import math
 import threading
 import time
 from pathlib import Path
@@ -63,13 +64,16 @@ class Peer(threading.Thread):
 
     def run(self) -> None:
         while not self.left.is_set():
-            data = self.endpoint.receive(REPEAT_AFTER)
-            if not data:
-                self.silence()
-            for frame in self.intake(data):
-                self.endpoint.accept_peer()
-                if (frame.system, frame.component) == self.master or self.fault == "obeys anybody":
-                    self.hear(frame.message)
+            self.listen(REPEAT_AFTER)
+
+    def listen(self, seconds: float) -> None:
+        data = self.endpoint.receive(seconds)
+        if not data:
+            self.silence()
+        for frame in self.intake(data):
+            self.endpoint.accept_peer()
+            if (frame.system, frame.component) == self.master or self.fault == "obeys anybody":
+                self.hear(frame.message)
 
     def silence(self) -> None:
         """Nothing came for a while."""
@@ -120,17 +124,25 @@ class Robot(Peer):
             self.repeats += 1
             self.say_tick(self.tick)
 
+    def begin(self) -> None:
+        self.tick = 0
+        self.say_tick(0)
+
     def say_tick(self, tick: int) -> None:
         x = float(self.repeats) if self.fault == "measures again for a repeat" else 0.0
         v = 0.1 if self.fault == "moves by itself" else 0.0
-        sample = Measurement(x, 0.0, 0.0, v, 0.0, tick, tick - 1 if tick else NO_COMMAND)
+        sample = Measurement(x, 0.0, 0.0, v, 0.0, tick, self.in_force(tick))
         self.send(sample, Tick(tick, 2 if self.fault == "miscounts measurements" else 1))
+
+    def in_force(self, tick: int) -> int:
+        """The stamp of the command in force before this tick."""
+        late = 2 if self.fault == "goes back to earlier commands" and tick % 5 == 0 else 0
+        return max(tick - 1 - late, NO_COMMAND)
 
     def hear(self, message: Message) -> None:
         match message:
             case Heartbeat() if self.tick is None:
-                self.tick = 0
-                self.say_tick(0)
+                self.begin()
             case Estimate():
                 self.estimates += 1
             case Command():
@@ -182,6 +194,46 @@ class Robot(Peer):
         }
         told = self.fault != f"does not report {int(message.param1)}"
         return [CommandAck(512, 0), *([reports[int(message.param1)]] if told else [])]
+
+
+class FreeRunningRobot(Robot):
+    """Ticks by its own clock, and follows the newest command."""
+
+    newest = followed = NO_COMMAND
+    due = 0.0
+
+    def begin(self) -> None:
+        self.tick, self.due = 0, time.monotonic()
+
+    def listen(self, seconds: float) -> None:
+        waits = self.fault == "waits for its first command" and self.newest == NO_COMMAND
+        if self.tick is None or (waits and self.tick > 0):
+            super().listen(seconds)
+            self.due = time.monotonic()
+        elif (left := self.due - time.monotonic()) > 0:
+            super().listen(left)
+        else:
+            self.step(self.tick)
+
+    def step(self, tick: int) -> None:
+        self.say_tick(tick)
+        if self.fault == "repeats ticks" and tick % 16 == 0:
+            self.say_tick(tick)
+        self.followed = self.newest
+        self.due += min(0.005 * 1.01**tick, 0.04) if self.fault == "tires" else 0.01
+        self.tick = tick + (2 if self.fault == "leaves ticks out" and tick % 16 == 0 else 1)
+
+    def silence(self) -> None:
+        """It waits for nobody."""
+
+    def in_force(self, _: int) -> int:
+        return self.followed
+
+    def hear_command(self, command: Command) -> None:
+        if not math.isfinite(command.v):
+            self.deaf = 1 if self.fault == "stumbles over NaN" else 0
+        elif command.tick > self.newest or self.fault == "follows older commands":
+            self.newest = command.tick
 
 
 class Controller(Peer):

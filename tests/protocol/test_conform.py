@@ -1,14 +1,25 @@
 """The kit passes what keeps the rules, and finds each fault: its own item, and no other."""
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
 
 from laglab_protocol import make_key, open_endpoint
-from laglab_protocol.conform import Patience, Report, conform, controller, robot
+from laglab_protocol.conform import (
+    Pace,
+    Patience,
+    Report,
+    conform,
+    controller,
+    freerunning,
+    lockstep,
+)
+from laglab_protocol.conform.items import Item
 
-from .reference_peers import Controller, Robot
+from .reference_peers import Controller, FreeRunningRobot, Robot
 
 QUICK = Patience(appear=3.0, react=1.0, refuse=0.1)
 
@@ -40,6 +51,7 @@ ROBOT = BOTH | {
     "measures again for a repeat": "a repeat brings the same messages",
     "miscounts measurements": "the tick counts its measurements",
     "moves by itself": "measurements tell the command in force",
+    "goes back to earlier commands": "a later measurement tells of no earlier command",
     "leaves ticks out": "it goes from tick to tick",
     "takes later commands": "a command for a later tick is no answer",
     "takes earlier commands": "a command for an earlier tick is no answer",
@@ -54,6 +66,23 @@ ROBOT = BOTH | {
     "does not answer pings": "it answers a ping",
     "ignores END": "it answers END",
     "gives another reason": "it answers END",
+}
+LOCKSTEP_ALONE = {
+    "never repeats",
+    "measures again for a repeat",
+    "goes back to earlier commands",
+    "leaves ticks out",
+    "takes later commands",
+    "takes earlier commands",
+    "does not wait for estimates",
+    "is slow",
+}
+FREE_RUNNING = {fault: item for fault, item in ROBOT.items() if fault not in LOCKSTEP_ALONE} | {
+    "waits for its first command": "it waits for no answer",
+    "tires": "its ticks come evenly",
+    "follows older commands": "a command that is older than the newest is not followed",
+    "repeats ticks": "each tick comes once",
+    "leaves ticks out": "each tick comes once",
 }
 CONTROLLER = BOTH | {
     "stamps estimates wrong": "an answer is whole and stamped",
@@ -76,9 +105,10 @@ NOT_ALONE = {
 """A peer that fails one of these can pass no other."""
 
 
-def robot_with(fault: str, key_file: Path | None = None) -> Report:
-    with open_endpoint("udpin://127.0.0.1:0") as endpoint, Robot(endpoint, fault, key_file):
-        return conform(endpoint.name.replace("udpin", "udpout"), "robot", key_file, QUICK)
+def robot_with(fault: str, key_file: Path | None = None, pace: Pace = "lockstep") -> Report:
+    kind = Robot if pace == "lockstep" else FreeRunningRobot
+    with open_endpoint("udpin://127.0.0.1:0") as endpoint, kind(endpoint, fault, key_file):
+        return conform(endpoint.name.replace("udpin", "udpout"), "robot", key_file, QUICK, pace)
 
 
 def controller_with(fault: str, key_file: Path | None = None) -> Report:
@@ -89,6 +119,10 @@ def controller_with(fault: str, key_file: Path | None = None) -> Report:
         Controller(endpoint, fault, key_file),
     ):
         return conform(url, "controller", key_file, QUICK)
+
+
+def others(items: Sequence[Item[Any]]) -> set[str]:
+    return {item.name for item in items} - NOT_ALONE
 
 
 @pytest.fixture
@@ -102,6 +136,11 @@ def test_a_faultless_robot_conforms(key_file: Path) -> None:
     assert robot_with("", key_file).failed == []
 
 
+def test_a_faultless_free_running_robot_conforms(key_file: Path) -> None:
+    assert robot_with("", None, "realtime").failed == []
+    assert robot_with("", key_file, "realtime").failed == []
+
+
 def test_a_faultless_controller_conforms(key_file: Path) -> None:
     assert controller_with("").failed == []
     assert controller_with("", key_file).failed == []
@@ -111,6 +150,12 @@ def test_a_faultless_controller_conforms(key_file: Path) -> None:
 @pytest.mark.parametrize("fault", ROBOT)
 def test_a_broken_robot_fails_its_own_item_alone(fault: str) -> None:
     assert robot_with(fault).failed == [ROBOT[fault]]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fault", FREE_RUNNING)
+def test_a_broken_free_running_robot_fails_its_own_item_alone(fault: str) -> None:
+    assert robot_with(fault, None, "realtime").failed == [FREE_RUNNING[fault]]
 
 
 @pytest.mark.slow
@@ -132,11 +177,17 @@ def test_a_trusting_controller_fails_its_own_item_alone(fault: str, key_file: Pa
 
 
 def test_every_item_has_a_peer_that_fails_it() -> None:
-    assert {item.name for item in robot.ITEMS} - NOT_ALONE == {*ROBOT.values(), *SIGNED.values()}
-    assert {item.name for item in controller.ITEMS} - NOT_ALONE == {
-        *CONTROLLER.values(),
-        *SIGNED.values(),
-    }
+    assert others(lockstep.ITEMS) == {*ROBOT.values(), *SIGNED.values()}
+    assert others(freerunning.ITEMS) == {*FREE_RUNNING.values(), *SIGNED.values()}
+    assert others(controller.ITEMS) == {*CONTROLLER.values(), *SIGNED.values()}
+
+
+def test_a_robot_with_a_clock_of_its_own_is_told_from_one_that_breaks_the_lock_step() -> None:
+    with open_endpoint("udpin://127.0.0.1:0") as endpoint, FreeRunningRobot(endpoint, "", None):
+        report = conform(endpoint.name.replace("udpin", "udpout"), "robot", None, QUICK)
+
+    assert not report.conforms
+    assert "--pace realtime" in report.table()
 
 
 def test_nobody_there_is_said() -> None:
@@ -156,7 +207,7 @@ def test_the_report_reads_as_a_table_and_as_junit() -> None:
     assert "a corrupted frame is refused" in report.table()
     assert "the robot does not conform" in report.table()
     assert suite.get("failures") == "1"
-    assert len(suite.findall("testcase")) == len(robot.ITEMS)
+    assert len(suite.findall("testcase")) == len(lockstep.ITEMS)
     assert [case.get("name") for case in suite if case.find("failure") is not None] == [
         "a corrupted frame is refused"
     ]

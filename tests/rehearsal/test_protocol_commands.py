@@ -124,6 +124,13 @@ def test_nobody_there_does_not_conform(laglab: Laglab) -> None:
     assert "does not conform" in result.stdout
 
 
+def test_a_controller_has_no_pace_to_test(laglab: Laglab) -> None:
+    url = "udpin://127.0.0.1:0"
+    result = laglab("conform", url, "--side", "controller", "--pace", "realtime")
+    assert result.returncode == 2
+    assert "leave --pace out" in result.stderr
+
+
 def test_a_ground_station_reads_the_gains_and_the_noise() -> None:
     shown = shown_parameters(Scenario(noise=True))
 

@@ -22,16 +22,24 @@ class Item(Generic[AnySession]):
     mandatory: bool = True
 
 
-def carry_out(items: Iterable[Item[AnySession]], session: AnySession) -> tuple[Result, ...]:
+def carry_out(
+    items: Iterable[Item[AnySession]], session: AnySession, progress: Callable[[str], None]
+) -> tuple[Result, ...]:
     """Every item in its turn; one that fails does not keep the others from being tried.
 
     Only without the first, that the peer is there at all, is there nothing to try them on.
+    `progress` is told what is tried.
     """
+
+    def tried(item: Item[AnySession]) -> Result:
+        progress(f"{item.group}: {item.name}")
+        return _result(item, session)
+
     first, *others = items
-    found = _result(first, session)
+    found = tried(first)
     if found.verdict is Verdict.FAILED:
         return found, *(_not_tried(item) for item in others)
-    return found, *(_result(item, session) for item in others)
+    return found, *map(tried, others)
 
 
 def _not_tried(item: Item[AnySession]) -> Result:
@@ -40,7 +48,7 @@ def _not_tried(item: Item[AnySession]) -> Result:
 
 
 def _result(item: Item[AnySession], session: AnySession) -> Result:
-    started = time.monotonic()
+    started, ended = time.monotonic(), session.ended
     verdict, reason = Verdict.PASSED, ""
     try:
         wrong = item.check(session)
@@ -50,6 +58,8 @@ def _result(item: Item[AnySession], session: AnySession) -> Result:
         verdict, reason = Verdict.FAILED, str(error)
     except DoesNotApplyError as error:
         verdict, reason = Verdict.SKIPPED, str(error)
+    if verdict is Verdict.FAILED and ended:
+        reason += f" (its run had ended at tick {ended.tick}: let it run longer)"
     seconds = time.monotonic() - started
     return Result(item.group, item.name, item.mandatory, verdict, reason, seconds)
 
@@ -75,7 +85,7 @@ def refused(mangle: Mangle) -> Callable[[Session], str | None]:
 
     def check(session: Session) -> str | None:
         session.endpoint.send(mangle(session, session.forged()))
-        if session.reacts(session.patience.refuse):
+        if session.reacts(session.refusal):
             return "it was taken"
         session.exchange()
         return None

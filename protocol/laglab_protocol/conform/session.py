@@ -11,12 +11,14 @@ from laglab_protocol.endpoints import Endpoint
 from laglab_protocol.frame import Frame
 from laglab_protocol.keys import read_key
 from laglab_protocol.message import Message
+from laglab_protocol.messages import End
 from laglab_protocol.receiver import Receiver
 from laglab_protocol.signing import Signer, Verifier
 
 
 class Patience(NamedTuple):
-    """Seconds: for the peer to appear, for a reaction that is due, for one that must not come."""
+    """Seconds: for the peer to appear, for a reaction that is due, for one that must not come
+    (longer where reactions take longer)."""
 
     appear: float = 10.0
     react: float = 2.0
@@ -47,6 +49,18 @@ class Session(ABC):
         self.heard: list[Frame] = []
         self.batches: list[list[Frame]] = []
         self._sequence = 0
+        self._slowest = 0.0
+
+    @property
+    def refusal(self) -> float:
+        """After so many seconds no reaction will come any more: twice as long as any has taken."""
+        return max(self.patience.refuse, 2.0 * self._slowest)
+
+    @property
+    def ended(self) -> End | None:
+        """The peer's word that its run is over."""
+        ends = (each.message for each in self.heard if isinstance(each.message, End))
+        return next(ends, None)
 
     @abstractmethod
     def connect(self) -> None:
@@ -98,8 +112,10 @@ class Session(ABC):
 
     def reacts(self, seconds: float) -> bool:
         """Whether the reaction comes; if so the next stimulus is another one."""
+        began = time.monotonic()
         if self.listen(seconds, self.is_reaction) is None:
             return False
+        self._slowest = max(self._slowest, time.monotonic() - began)
         self.go_on()
         return True
 
@@ -111,4 +127,4 @@ class Session(ABC):
 
     def quiet(self) -> None:
         """Take in what is still under way."""
-        self.listen(self.patience.refuse, lambda _: False)
+        self.listen(self.refusal, lambda _: False)

@@ -4,10 +4,11 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.console import Console
 
 from laglab.commands.run import KeyOption
 from laglab_protocol import make_key
-from laglab_protocol.conform import Side
+from laglab_protocol.conform import Pace, Side
 from laglab_protocol.conform import conform as test_conformance
 from laglab_protocol.dialect import LANGUAGES, dialect_path, generate_into
 from laglab_protocol.lint import lint as find_faults
@@ -60,9 +61,20 @@ def conform(
         Path | None, typer.Option("--junit", metavar="FILE", help="Also write JUnit XML.")
     ] = None,
     key: KeyOption = None,
+    pace: Annotated[
+        Pace | None,
+        typer.Option(help="Whether a robot waits for each command, or has a clock of its own."),
+    ] = None,
 ) -> None:
     """Test whether the robot, or the controller, at URL speaks the protocol; ends its run."""
-    report = test_conformance(url, side, key)
+    if side == "controller" and pace:
+        raise typer.BadParameter("a controller keeps no pace of its own: leave --pace out")
+    console = Console(stderr=True)
+    console.print(f"testing the {side} at {url}", highlight=False, soft_wrap=True)
+    with console.status("") as status:
+        report = test_conformance(
+            url, side, key, pace=pace or "lockstep", progress=lambda item: status.update(item)
+        )
     print(report.table())
     if junit:
         junit.write_text(report.junit(), encoding="utf-8")
