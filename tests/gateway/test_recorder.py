@@ -1,0 +1,86 @@
+"""What is on disk when a run ends in the middle of a tick."""
+
+from contextlib import closing
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from laglab_fmu import Robot, RobotParameters
+from laglab_gateway import (
+    Direction,
+    Fates,
+    FileRecorder,
+    FmuPlant,
+    Gateway,
+    GatewayConfig,
+    Impairments,
+    Patience,
+    RandomFates,
+    read_link_log,
+    serve_lockstep,
+)
+from laglab_gateway.trace import read_trace
+from laglab_protocol import (
+    ROBOT_COMPONENT,
+    ROBOT_SYSTEM,
+    STATION_COMPONENT,
+    STATION_HEARTBEAT,
+    STATION_SYSTEM,
+    Command,
+    EndpointError,
+    Receiver,
+    Sender,
+    Tick,
+)
+
+BREAKS_AT = 7
+DIRECTIONS: tuple[Direction, ...] = ("command", "measurement")
+
+
+class BreakingLink:
+    """A station that answers at once, until the link to it breaks while a tick is sent."""
+
+    datagrams = True
+
+    def __init__(self) -> None:
+        self._sender, self._receiver = Sender(STATION_SYSTEM, STATION_COMPONENT), Receiver()
+        self._waiting = self._sender.frame(STATION_HEARTBEAT)
+
+    def send(self, data: bytes) -> None:
+        for frame in self._receiver.receive(data):
+            if isinstance(frame.message, Tick):
+                tick = frame.message.tick
+                if tick == BREAKS_AT:
+                    raise EndpointError("the cable is out")
+                command = Command(0.0, 0.0, tick, ROBOT_SYSTEM, ROBOT_COMPONENT, 0)
+                self._waiting = self._sender.frame(command)
+
+    def receive(self, _: float) -> bytes:
+        waiting, self._waiting = self._waiting, b""
+        return waiting
+
+    def accept_peer(self) -> None: ...
+
+
+def test_a_link_that_breaks_leaves_the_trace_and_what_the_link_did_up_to_the_same_tick(
+    tmp_path: Path,
+) -> None:
+    fates: dict[Direction, Fates] = {
+        direction: RandomFates(Impairments(duplicate=0.5), [], np.random.default_rng(1))
+        for direction in DIRECTIONS
+    }
+    parameters = RobotParameters()
+    with (
+        Robot.open(3, parameters) as robot,
+        closing(FileRecorder(tmp_path)) as recorder,
+        pytest.raises(EndpointError),
+    ):
+        gateway = Gateway(FmuPlant(robot, parameters), GatewayConfig(0, 0, 100, 0.01), fates)
+        serve_lockstep(gateway, BreakingLink(), recorder, Patience(), lambda _: None)
+
+    whole = set(range(BREAKS_AT))
+    assert set(read_trace(tmp_path / "trace.csv")["tick"]) == whole
+    for direction in DIRECTIONS:
+        rows = read_link_log(tmp_path / "link.csv", direction)
+        assert {row.tick for row in rows} == whole
