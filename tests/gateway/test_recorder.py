@@ -71,13 +71,10 @@ def test_a_link_that_breaks_leaves_the_trace_and_what_the_link_did_up_to_the_sam
         for direction in DIRECTIONS
     }
     parameters = RobotParameters()
-    with (
-        Robot.open(3, parameters) as robot,
-        closing(FileRecorder(tmp_path)) as recorder,
-        pytest.raises(EndpointError),
-    ):
+    with Robot.open(3, parameters) as robot, closing(FileRecorder(tmp_path)) as recorder:
         gateway = Gateway(FmuPlant(robot, parameters), GatewayConfig(0, 0, 100, 0.01), fates)
-        serve_lockstep(gateway, BreakingLink(), recorder, Patience(), lambda _: None)
+        with pytest.raises(EndpointError):
+            serve_lockstep(gateway, BreakingLink(), recorder, Patience(), lambda _: None)
 
     whole = set(range(BREAKS_AT))
     assert set(read_trace(tmp_path / "trace.csv")["tick"]) == whole
