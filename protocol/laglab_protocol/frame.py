@@ -1,4 +1,4 @@
-"""MAVLink 2 frames, one at a time, without state.
+"""MAVLink 2 frames, read one at a time.
 
     FD  length  incompatibility  compatibility  sequence  system  component  id (3)
         payload  crc (2)  [signature (13)]
@@ -15,7 +15,7 @@ from typing import final
 from fastcrc import crc16
 from msgspec import Struct
 
-from laglab_protocol.layout import LAYOUT_OF_ID, Layout
+from laglab_protocol.layout import LAYOUT_OF_ID
 from laglab_protocol.message import Message
 
 START = 0xFD
@@ -26,13 +26,6 @@ SIGNED = 0x01
 """The only incompatibility flag that MAVLink 2 defines so far."""
 
 _crc = crc16.mcrf4xx
-_SHORTEST_BODY = 9
-"""From the third byte of a frame to the end of a payload of one byte."""
-_OPENINGS = {
-    length + 8: (bytes([START, length]), _crc(bytes([length]))) for length in range(1, 256)
-}
-"""By the length of that body: the first two bytes of the frame, and the CRC of the second."""
-_pack_header = struct.Struct("<BBBBB3s").pack
 _unpack_header = struct.Struct("<xBBxBBBI").unpack_from  # one byte beyond the id: masked off
 
 
@@ -66,18 +59,6 @@ class Refusal(Enum):
     """Signed, and we have no key to tell by whom."""
     REPLAYED = auto()
     """Signed with our key, but no later than what this stream has said, or a minute old."""
-
-
-def header(layout: Layout, system: int, component: int, sequence: int, flags: int) -> bytes:
-    """What stands between the length and the payload."""
-    return _pack_header(flags, 0, sequence, system, component, layout.id_bytes)
-
-
-def enclose(body: bytes, crc_extra: bytes) -> tuple[bytes, int]:
-    """The frame up to its CRC, and the CRC; header and untruncated payload are `body`."""
-    body = body.rstrip(b"\0").ljust(_SHORTEST_BODY, b"\0")
-    opening, crc = _OPENINGS[len(body)]
-    return opening + body, _crc(body + crc_extra, crc)
 
 
 def decode(buffer: bytes, start: int, signed_too: bool = True) -> Frame | Refusal:

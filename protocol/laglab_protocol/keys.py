@@ -11,7 +11,7 @@ from laglab_protocol.endpoints import Endpoint
 from laglab_protocol.errors import KeyFileError, UnsignedLinkError
 from laglab_protocol.receiver import Receiver
 from laglab_protocol.sender import Sender
-from laglab_protocol.signing import AHEAD, KEY_SIZE, Signer, Stream, Timestamps, Verifier
+from laglab_protocol.signing import AHEAD, KEY_SIZE, Place, Signer, Stream, Timestamps, Verifier
 
 
 def make_key(path: Path) -> None:
@@ -56,13 +56,13 @@ class StoredTimestamps(Timestamps):
         self._path = path
         try:
             stored = json.loads(path.read_text()) if path.exists() else {}
-            self.last = {_stream(name): int(value) for name, value in stored.items()}
+            self.places = {_stream(name): Place(int(last), 0) for name, last in stored.items()}
         except (OSError, ValueError, AttributeError) as error:
             raise KeyFileError(
                 f"{path} does not hold the timestamps of a key: {error}; without them old frames "
                 "could be played again: restore it, or make a new key for both sides"
             ) from error
-        self._written = dict(self.last)
+        self._written = self.last
 
     def reserve(self, stream: Stream, timestamp: int) -> int:
         self._written[stream] = timestamp + AHEAD
@@ -71,7 +71,7 @@ class StoredTimestamps(Timestamps):
 
     def close(self) -> None:
         """From here on the file is exact."""
-        self._written = dict(self.last)
+        self._written = self.last
         self._write()
 
     def _write(self) -> None:

@@ -9,6 +9,7 @@ bytes of SHA-256(key, frame so far, link id, timestamp). The streams of a key ar
 import struct
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from hashlib import sha256
 from hmac import compare_digest
 
@@ -40,11 +41,24 @@ def signing_time() -> int:
     return (time.time_ns() - EPOCH_NS) // 10_000
 
 
+@dataclass(slots=True)
+class Place:
+    """Where a stream has got to: its last timestamp, and how far it may go on without asking."""
+
+    last: int
+    reserved: int
+
+
 class Timestamps:
-    """The last timestamp of each stream, our own included. This one forgets at the end."""
+    """The place of each stream, our own included. These forget it at the end."""
 
     def __init__(self) -> None:
-        self.last: dict[Stream, int] = {}
+        self.places: dict[Stream, Place] = {}
+
+    @property
+    def last(self) -> dict[Stream, int]:
+        """The last timestamp of each stream."""
+        return {stream: place.last for stream, place in self.places.items()}
 
     def reserve(self, stream: Stream, timestamp: int) -> int:
         """Before `timestamp` counts: up to which one may the stream go on without asking again."""
@@ -68,9 +82,9 @@ class Signer:
         self._key = key
         self._stream = stream
         self._timestamps = timestamps or Timestamps()
-        self._last = self._timestamps.last
-        self._latest = self._last.get(stream, 0) << 24 | stream[0] << 16
-        self._reserved = self._counting_until = 0
+        self._place = self._timestamps.places.get(stream) or Place(0, 0)
+        self._latest = self._place.last << 24 | stream[0] << 16
+        self._counting_until = 0
         self._clock = clock
 
     def sign(self, frame: bytes, crc: int) -> bytes:
@@ -84,11 +98,11 @@ class Signer:
         return stamped + sha256(self._key + stamped).digest()[:6]
 
     def _by_the_clock(self, least: int) -> int:
-        timestamp = max(least >> 24, self._clock())
-        if timestamp > self._reserved:
-            self._reserved = self._timestamps.reserve(self._stream, timestamp)
-            self._last[self._stream] = self._reserved
-        self._counting_until = min(timestamp + CLOCK_EVERY, self._reserved + 1) << 24
+        timestamp, place = max(least >> 24, self._clock()), self._place
+        if timestamp > place.reserved:
+            place.last = place.reserved = self._timestamps.reserve(self._stream, timestamp)
+            self._timestamps.places[self._stream] = place
+        self._counting_until = min(timestamp + CLOCK_EVERY, place.reserved + 1) << 24
         return timestamp << 24 | self._stream[0] << 16
 
 
@@ -104,8 +118,7 @@ class Verifier:
     ) -> None:
         self._key = key
         self._timestamps = timestamps or Timestamps()
-        self._last = self._timestamps.last
-        self._reserved: dict[Stream, int] = {}
+        self._places = self._timestamps.places
         self._allow_unsigned = allow_unsigned
         self._clock = clock
 
@@ -119,13 +132,18 @@ class Verifier:
         if not compare_digest(sha256(self._key + raw[:-6]).digest()[:6], signature):
             return Refusal.BAD_SIGNATURE
         stream, timestamp = (link, frame.system, frame.component), low | high << 32
-        last = self._last.get(stream)
-        if timestamp <= (self._earliest_new() if last is None else last):
+        place = self._places.get(stream)
+        if place is None or not place.last < timestamp <= place.reserved:
+            return self._unreserved(stream, timestamp)
+        place.last = timestamp
+        return None
+
+    def _unreserved(self, stream: Stream, timestamp: int) -> Refusal | None:
+        place = self._places.get(stream)
+        if timestamp <= (place.last if place else self._earliest_new()):
             return Refusal.REPLAYED
-        if timestamp > self._reserved.get(stream, 0):
-            self._reserved[stream] = self._timestamps.reserve(stream, timestamp)
-        self._last[stream] = timestamp
+        self._places[stream] = Place(timestamp, self._timestamps.reserve(stream, timestamp))
         return None
 
     def _earliest_new(self) -> int:
-        return max(self._clock(), *self._last.values(), 0) - MINUTE
+        return max(self._clock(), *self._timestamps.last.values(), 0) - MINUTE
