@@ -25,8 +25,9 @@ static LinkEvent request_of(uint8_t system, uint8_t component, uint16_t number) 
 
 static LinkEvent event_of(const mavlink_message_t *message) {
     const LinkEvent nothing = {.kind = LINK_NOTHING};
-    if (message->sysid != STATION_SYSTEM || message->compid != STATION_COMPONENT) {
-        return nothing;
+    const bool modern = message->magic == MAVLINK_STX && !(message->incompat_flags & MAVLINK_IFLAG_SIGNED);
+    if (!modern || message->sysid != STATION_SYSTEM || message->compid != STATION_COMPONENT) {
+        return nothing; /* what is signed would need the key */
     }
     switch (message->msgid) {
     case MAVLINK_MSG_ID_HEARTBEAT:

@@ -62,6 +62,11 @@ def from_station(frame: Frame) -> bool:
     return (frame.system, frame.component) == (STATION_SYSTEM, STATION_COMPONENT)
 
 
+def _is_meant(command: Command) -> bool:
+    target = command.target_system, command.target_component
+    return target == (ROBOT_SYSTEM, ROBOT_COMPONENT)
+
+
 def reason_of(end: End) -> EndReason:
     """Why it ended; a reason that the dialect does not have counts as a failure."""
     return EndReason(end.reason) if end.reason in set(EndReason) else EndReason.FAILED
@@ -163,6 +168,8 @@ class RobotSide(ABC):
         match message:
             case Heartbeat():
                 self.connected = True
+            case Command() if not _is_meant(message):
+                pass  # for another robot on the same line
             case Estimate() if message.tick == self.tick and not self.answered:
                 self._estimates.append(message)
             case Command() if message.tick == self.tick and not self.answered:

@@ -33,6 +33,7 @@ from laglab_protocol.messages import (
 )
 from laglab_protocol.receiver import Counters, Receiver
 from laglab_protocol.sender import Sender
+from laglab_protocol.signing import EVERY_MESSAGE
 from laglab_protocol.standard import (
     STATION_HEARTBEAT,
     Attitude,
@@ -58,6 +59,7 @@ from laglab_protocol.standard import (
 from laglab_protocol.tlog import TlogError, read_tlog, tlog_record
 
 __all__ = [
+    "EVERY_MESSAGE",
     "NO_COMMAND",
     "ROBOT_COMPONENT",
     "ROBOT_SYSTEM",

@@ -118,13 +118,19 @@ class Codec:
         self._link_ids = itertools.count()
         self.sender, self.receiver = self.on_another_link()
 
-    def on_another_link(self) -> tuple[Sender, Receiver]:
-        """For one more link: frames are numbered apart there; what was said on any is known."""
+    def on_another_link(
+        self, allow_unsigned: frozenset[str] = frozenset()
+    ) -> tuple[Sender, Receiver]:
+        """For one more link: frames are numbered apart there; what was said on any is known.
+
+        `allow_unsigned` names the messages that need no signature there.
+        """
         link_id = next(self._link_ids)
         if self._key is None:
             return Sender(*self._speaker), Receiver()
         signer = Signer(self._key, (link_id, *self._speaker), self._timestamps)
-        return Sender(*self._speaker, signer), Receiver(Verifier(self._key, self._timestamps))
+        verifier = Verifier(self._key, self._timestamps, allow_unsigned)
+        return Sender(*self._speaker, signer), Receiver(verifier)
 
     def close(self) -> None:
         self._timestamps.close()

@@ -14,7 +14,7 @@ from hashlib import sha256
 from hmac import compare_digest
 
 from laglab_protocol.frame import SIGNATURE_SIZE, SIGNED, Frame, Refusal
-from laglab_protocol.layout import layout_of
+from laglab_protocol.layout import LAYOUT_OF_ID, layout_of
 
 KEY_SIZE = 32
 EPOCH_NS = 1_420_070_400 * 10**9
@@ -24,6 +24,8 @@ MINUTE = 60 * 100_000
 
 _unpack_signature = struct.Struct("<BIH6s").unpack_from
 
+EVERY_MESSAGE = frozenset(layout.name for layout in LAYOUT_OF_ID.values())
+"""By name, for those who need not sign."""
 CLOCK_EVERY = 16
 """Timestamps: in between a signer counts on, for reading the clock costs a third of signing."""
 _NEXT = 1 << 24

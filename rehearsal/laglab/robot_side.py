@@ -39,13 +39,18 @@ from laglab_gateway import (
     standard_parameters,
 )
 from laglab_protocol import (
+    EVERY_MESSAGE,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
     Codec,
     Endpoint,
+    Receiver,
+    Sender,
     open_endpoint,
     refuse_open_door,
 )
+
+NewLink = Callable[[], tuple[Sender, Receiver]]
 
 
 @dataclass(frozen=True)
@@ -158,13 +163,13 @@ def serve(
     patience: Patience,
     progress: Callable[[int], None],
     watchers: Sequence[Endpoint] = (),
-    watch_codec: Codec | None = None,
+    watch_link: NewLink | None = None,
 ) -> tuple[Outcome, dict[str, Any]]:
     """Run the robot's side at the scenario's pace: how it ended, and what the stamps tell.
 
-    Without a `watch_codec` the watchers' frames are not signed.
+    Each watcher is spoken to by a sender and a receiver of its own, which `watch_link` makes.
     """
-    watch = _watch(gateway.services, watchers, watch_codec)
+    watch = _watch(gateway.services, watchers, watch_link)
     if scenario.pace == "lockstep":
         outcome = serve_lockstep(gateway, endpoint, recorder, patience, progress, watch)
         return outcome, {"link": gateway.audit.report()}
@@ -176,9 +181,9 @@ def serve(
     return outcome, {"link": link, "timing": lateness.report()}
 
 
-def _watch(services: Services, watchers: Sequence[Endpoint], codec: Codec | None) -> Watch:
-    codec = codec or Codec(ROBOT_SYSTEM, ROBOT_COMPONENT)
-    return Watch(services, [Watcher(each, *codec.on_another_link()) for each in watchers])
+def _watch(services: Services, watchers: Sequence[Endpoint], watch_link: NewLink | None) -> Watch:
+    new_link = watch_link or Codec(ROBOT_SYSTEM, ROBOT_COMPONENT).on_another_link
+    return Watch(services, [Watcher(each, *new_link()) for each in watchers])
 
 
 def clock_audit(services: Services) -> dict[str, float] | None:
@@ -206,12 +211,12 @@ def serve_real(
     patience: Patience,
     progress: Callable[[int], None],
     watchers: Sequence[Endpoint] = (),
-    watch_codec: Codec | None = None,
+    watch_link: NewLink | None = None,
 ) -> tuple[Outcome, dict[str, Any]]:
     """Be the link in front of a real robot, at its own pace; as `serve`."""
     services = robot_services(scenario, free_running=True, placeable=False, armed=armed)
     relay = Relay(gateway_config(scenario), services, link_fates(scenario), codec)
-    watch = _watch(services, watchers, watch_codec)
+    watch = _watch(services, watchers, watch_link)
     outcome = serve_remote(relay, robot, endpoint, recorder, patience, progress, watch)
     return outcome, {"link": relay.audit.report() | {"timesync": clock_audit(services)}}
 
@@ -224,11 +229,14 @@ Serve = Callable[..., tuple[Outcome, dict[str, Any]]]
 def open_robot(scenario: Scenario, setup: Setup) -> Iterator[Serve]:
     """The robot's side: the FMU, or the real robot; open until the context ends."""
     with Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, setup.key) as codec:
-        watched = None if setup.unsigned else codec
+        need_no_key = EVERY_MESSAGE if setup.unsigned else frozenset[str]()
+        watch_link = partial(codec.on_another_link, need_no_key)
         if setup.plant is None:
             with open_gateway(scenario, codec, setup.armed) as gateway:
-                yield partial(serve, scenario, gateway, watch_codec=watched)
+                yield partial(serve, scenario, gateway, watch_link=watch_link)
         else:
             with open_endpoint(setup.plant) as robot:
                 refuse_open_door(robot, None, setup.unsigned)
-                yield partial(serve_real, scenario, robot, codec, setup.armed, watch_codec=watched)
+                yield partial(
+                    serve_real, scenario, robot, codec, setup.armed, watch_link=watch_link
+                )

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import FmuPlant, Gateway, GatewayConfig, Outcome
@@ -102,6 +103,8 @@ def test_only_the_stations_command_for_this_tick_answers_it(robot: Robot) -> Non
     gateway.open_tick()
     gateway.receive(station.say(command(7)), whole=True)
     gateway.receive(Station(system=42).say(command(0)), whole=True)
+    gateway.receive(station.say(replace(command(0), target_system=2)), whole=True)
+    gateway.receive(station.say(replace(command(0), target_component=2)), whole=True)
     gateway.receive(b"\xfd\x12 no frame at all", whole=True)
     assert not gateway.answered
     gateway.receive(station.say(command(0)), whole=True)

@@ -72,8 +72,15 @@ class Peer(threading.Thread):
             self.silence()
         for frame in self.intake(data):
             self.endpoint.accept_peer()
-            if (frame.system, frame.component) == self.master or self.fault == "obeys anybody":
+            if self.obeys(frame):
                 self.hear(frame.message)
+
+    def obeys(self, frame: Frame) -> bool:
+        if self.fault == "obeys any component":
+            return frame.system == self.master[0]
+        if self.fault == "obeys anybody":
+            return frame.component == self.master[1]
+        return (frame.system, frame.component) == self.master
 
     def silence(self) -> None:
         """Nothing came for a while."""
@@ -145,14 +152,19 @@ class Robot(Peer):
                 self.begin()
             case Estimate():
                 self.estimates += 1
-            case Command():
+            case Command() if self.is_meant(message):
                 self.hear_command(message)
             case End() if self.fault != "ignores END":
                 reason = 3 if self.fault == "gives another reason" else message.reason
                 self.send(End(self.tick or 0, reason))
-                self.left.set()
+                if self.fault != "goes on after END":
+                    self.left.set()
             case _:
                 self.serve(message)
+
+    def is_meant(self, command: Command) -> bool:
+        target = command.target_system, command.target_component
+        return target == (self.system, self.component) or self.fault == "takes any target"
 
     def hear_command(self, command: Command) -> None:
         assert self.tick is not None
@@ -285,5 +297,5 @@ class Controller(Peer):
         target = 2 if self.fault == "aims elsewhere" else 1
         estimate = Estimate(*[0.0] * 9, tick=stamp)  # type: ignore[misc]
         command = Command(v, 0.0, tick, target, 1, 1)
-        twice = self.fault == "answers twice" and tick > 18
+        twice = self.fault == "answers twice" and tick > 19
         self.send(estimate, command, *([estimate, command] if twice else []))

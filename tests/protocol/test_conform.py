@@ -38,6 +38,7 @@ BOTH = {
     "chokes on MAVLink 1": "MAVLink 1 does no harm",
     "chokes on unknown messages": "an unknown message is passed over",
     "obeys anybody": "another system is not obeyed",
+    "obeys any component": "another component of the system is not obeyed",
     "sends stray bytes": "it sends nothing but frames",
     "skips numbers": "it numbers its frames one by one",
     "sends zeros": "it leaves trailing zeros at home",
@@ -66,7 +67,9 @@ ROBOT = BOTH | {
     "loses parameters": "it lists its parameters",
     "mixes names up": "it reads a parameter by index and name",
     "does not answer pings": "it answers a ping",
+    "takes any target": "a command for another robot is not followed",
     "ignores END": "it answers END",
+    "goes on after END": "it answers END",
     "gives another reason": "it answers END",
 }
 LOCKSTEP_ALONE = {

@@ -162,3 +162,22 @@ def test_an_open_door_is_refused(key_file: Path) -> None:
         refuse_open_door(outside, None, unsigned_allowed=True)
         refuse_open_door(outside, key_file, unsigned_allowed=False)
         refuse_open_door(inside, None, unsigned_allowed=False)
+
+
+def test_each_link_has_an_id_of_its_own_and_none_hears_what_was_said_on_another(
+    tmp_path: Path,
+) -> None:
+    make_key(tmp_path / "key")
+    with Codec(200, 190, tmp_path / "key") as station:
+        said = station.sender.frame(COMMAND)
+    with Codec(1, 1, tmp_path / "key") as robot:
+        links = [(robot.sender, robot.receiver), *(robot.on_another_link() for _ in range(2))]
+        assert [sender.frame(COMMAND)[-13] for sender, _ in links] == [0, 1, 2]
+        assert [len(receiver.receive(said)) for _, receiver in links] == [1, 0, 0]
+        assert links[2][1].counters.refused == {Refusal.REPLAYED: 1}
+        latest = links[2][0].frame(COMMAND)
+    with Codec(1, 1, tmp_path / "key") as again:
+        _, receiver = again.on_another_link()
+        assert not receiver.receive(said)
+        sender, _ = again.on_another_link()
+        assert sender.frame(COMMAND)[-13:-6] > latest[-13:-6]

@@ -34,12 +34,17 @@ def _stranger(_: Session, forged: Forged) -> bytes:
     return replace(forged, system=STRANGER).raw
 
 
+def _other_part(_: Session, forged: Forged) -> bytes:
+    return replace(forged, component=STRANGER).raw
+
+
 def _only_frames(session: Session) -> str | None:
     counters = session.receiver.counters
-    if not counters.noise or _badly_signed(session):
+    noise = counters.noise - session.noise_before
+    if not noise or _badly_signed(session):
         return None  # what is not signed as it should be is another item's
     bad = {each.name: count for each, count in counters.refused.items()}
-    return f"{counters.noise} bytes in no frame {bad or ''}"
+    return f"{noise} bytes in no frame {bad or ''}"
 
 
 def _badly_signed(session: Session) -> dict[str, int]:
@@ -116,6 +121,7 @@ RECEIVING: list[Item[Session]] = [
     ),
     Item("versions", "MAVLink 1 does no harm", accepted(lambda _, forged: MAVLINK_1 + forged.raw)),
     Item("sender", "another system is not obeyed", refused(_stranger)),
+    Item("sender", "another component of the system is not obeyed", refused(_other_part)),
 ]
 
 SENDING: list[Item[Session]] = [

@@ -10,6 +10,7 @@ from laglab_protocol.conform.robot import (
     BEGINS,
     ENDS,
     NOT_FINITE,
+    NOT_MEANT,
     STAMPED,
     RobotSession,
     is_tick,
@@ -23,6 +24,10 @@ from laglab_protocol.messages import Measurement, Tick
 UNEVEN = 0.25
 """By how much the ticks a second may differ within a few seconds, as a share."""
 
+AT_ONCE = 0.0003
+"""[s] What comes sooner was there already."""
+MOST_PILED_UP = 1000
+
 
 class FreeRunningSession(RobotSession):
     """Its station. The stimulus is a command stamped with the newest tick that was heard, the
@@ -35,8 +40,12 @@ class FreeRunningSession(RobotSession):
         return isinstance(frame.message, Measurement) and frame.message.command_tick >= self.tick
 
     def go_on(self) -> None:
+        """To a later tick: the measurement that told of this one may have come before its own."""
         self.followed = self.tick
         super().go_on()
+        if self.tick == self.followed:
+            self.listen(self.patience.react, partial(_is_after, self.followed))
+            super().go_on()
 
     def exchange(self) -> None:
         """With the newest tick: what was refused may have used up the one before."""
@@ -67,15 +76,20 @@ def _even(session: FreeRunningSession) -> str | None:
 def _rate(session: FreeRunningSession) -> float:
     """Ticks a second, over half as long as a reaction may take."""
     began, first = _next_tick(session)
+    session.send(session.command(first))  # a robot may give up a silent station
     session.listen(session.patience.react / 2, lambda _: False)
     ended, last = _next_tick(session)
     return (last - first) / (ended - began)
 
 
 def _next_tick(session: FreeRunningSession) -> tuple[float, int]:
-    """When it came, and the newest."""
-    if session.listen(session.patience.react, is_tick) is None:
-        raise NoReactionError("no tick comes any more")
+    """When the next one came that had to be waited for: what had piled up tells no time."""
+    for _ in range(MOST_PILED_UP):
+        asked = time.monotonic()
+        if session.listen(session.patience.react, is_tick) is None:
+            raise NoReactionError("no tick comes any more")
+        if time.monotonic() - asked > AT_ONCE:
+            break
     return time.monotonic(), ticks(session)[-1].tick
 
 
@@ -107,6 +121,7 @@ ITEMS: list[Item[FreeRunningSession]] = [
     Item("timing", "its ticks come evenly", _even),
     *RECEIVING,
     Item("ticks", "a command that is older than the newest is not followed", _earlier),
+    NOT_MEANT,
     NOT_FINITE,
     *SERVICES,
     *SIGNING,

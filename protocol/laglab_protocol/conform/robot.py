@@ -2,7 +2,10 @@
 
 import time
 
-from laglab_protocol.conform.items import Item
+from msgspec.structs import replace
+
+from laglab_protocol.conform.forge import Forged
+from laglab_protocol.conform.items import Item, refused
 from laglab_protocol.conform.session import NoReactionError, Session
 from laglab_protocol.frame import Frame
 from laglab_protocol.message import Message
@@ -21,6 +24,9 @@ from laglab_protocol.messages import (
 from laglab_protocol.standard import STATION_HEARTBEAT, CommandAck, CommandLong
 
 Batch = list[Measurement]
+
+ANOTHER = 7
+"""The system of a robot that is not under test."""
 
 
 class RobotSession(Session):
@@ -84,7 +90,7 @@ def measurements(session: RobotSession) -> list[Measurement]:
 
 
 def batches(session: RobotSession) -> list[tuple[Batch, Tick]]:
-    """Every tick with the measurements that came since the one before."""
+    """Every tick but the first, which we may have heard in part, with its measurements."""
     batches, waiting = [], Batch()
     for frame in session.heard:
         if isinstance(frame.message, Measurement):
@@ -92,7 +98,7 @@ def batches(session: RobotSession) -> list[tuple[Batch, Tick]]:
         elif isinstance(frame.message, Tick):
             batches.append((waiting, frame.message))
             waiting = Batch()
-    return batches
+    return batches[1:]
 
 
 def _begins(session: RobotSession) -> str | None:
@@ -116,11 +122,13 @@ def _counts(session: RobotSession) -> str | None:
 
 
 def _echoes(session: RobotSession) -> str | None:
-    """Each measurement names an earlier command; none moves."""
+    """Each measurement names an earlier command; none moves, but by a command before ours."""
+    first = ticks(session)[0].tick
     for each in measurements(session):
         if not NO_COMMAND <= each.command_tick < max(each.tick, 0):
             return f"the measurement of tick {each.tick} names command {each.command_tick}"
-        if each.speeds != (0.0, 0.0):
+        others = NO_COMMAND < each.command_tick < first
+        if each.speeds != (0.0, 0.0) and not others:
             return f"the measurement of tick {each.tick} moves, though nobody commanded it"
     return None
 
@@ -135,11 +143,19 @@ def _ends(session: RobotSession) -> str | None:
     assert isinstance(answer.message, End)
     if answer.message.reason != end.reason:
         return f"END with reason {end.reason} is answered with {answer.message.reason}"
-    return None
+    session.quiet()
+    return "it goes on after END" if session.listen(session.refusal, is_tick) else None
+
+
+def _for_another(session: Session, _: Forged) -> bytes:
+    assert isinstance(session, RobotSession)
+    other = replace(session.command(session.tick), target_system=ANOTHER)
+    return session.forged(other).raw
 
 
 BEGINS = Item("ticks", "it begins when a station is heard", _begins)
 NOT_FINITE = Item("ticks", "it survives a command that is not finite", _not_finite)
+NOT_MEANT = Item("ticks", "a command for another robot is not followed", refused(_for_another))
 STAMPED = [
     Item("ticks", "the tick counts its measurements", _counts),
     Item("ticks", "measurements tell the command in force", _echoes),

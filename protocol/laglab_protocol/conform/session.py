@@ -25,6 +25,10 @@ class Patience(NamedTuple):
     refuse: float = 0.4
 
 
+STREAM_SILENCE = 0.05
+"""[s] Bytes that follow each other on a serial line, however slow, come sooner than this."""
+
+
 class NoReactionError(Exception):
     """The peer did not do what it must; the text says what."""
 
@@ -34,7 +38,7 @@ class DoesNotApplyError(Exception):
 
 
 class Session(ABC):
-    """One side's counterpart. `heard` is all that came, `batches` what came together."""
+    """One side's counterpart. `heard` is all that came."""
 
     system: int
     component: int
@@ -47,9 +51,11 @@ class Session(ABC):
         self.signer = Signer(self.key, (0, self.system, self.component)) if self.key else None
         self.receiver = Receiver(Verifier(self.key) if self.key else None)
         self.heard: list[Frame] = []
-        self.batches: list[list[Frame]] = []
+        self.noise_before = 0
+        """Bytes in no frame before the first frame: we may have come in the middle of one."""
         self._sequence = 0
         self._slowest = 0.0
+        self._last_byte = time.monotonic()
 
     @property
     def refusal(self) -> float:
@@ -102,13 +108,21 @@ class Session(ABC):
     def _receive(self, seconds: float) -> list[Frame]:
         data = self.endpoint.receive(seconds)
         frames = self.receiver.receive(data)
-        if self.endpoint.datagrams or not data:
+        if self.endpoint.datagrams or self._silent(data):
             frames += self.receiver.end_datagram()
         if frames:
             self.endpoint.accept_peer()
+            if not self.heard:
+                self.noise_before = self.receiver.counters.noise
             self.heard += frames
-            self.batches.append(frames)
         return frames
+
+    def _silent(self, data: bytes) -> bool:
+        """On a line a frame comes in pieces: only a real silence says that the rest is lost."""
+        now = time.monotonic()
+        if data:
+            self._last_byte = now
+        return now - self._last_byte >= STREAM_SILENCE
 
     def reacts(self, seconds: float) -> bool:
         """Whether the reaction comes; if so the next stimulus is another one."""
