@@ -9,15 +9,13 @@ from laglab_gateway.errors import StationSilentError
 from laglab_gateway.recorder import Recorder
 from laglab_gateway.side import Outcome, RobotSide, from_station
 from laglab_gateway.watch import Watch
+from laglab_protocol import Silence
 
 TIMESYNC_TICKS = 10
 """How often the station's clock is asked for."""
 
 END_TRIES = 5
 """A lost END only costs the station its silence timeout, so a few tries are enough."""
-
-STREAM_SILENCE = 0.05
-"""[s] Bytes that follow each other on a serial line, however slow, come sooner than this."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +68,7 @@ class Conversation:
         self._patience = patience
         self._watch = watch or Watch(gateway.services, [])
         self._heard, self._heard_tick = now(), 0
-        self._last_byte = self._heard
+        self._silence = Silence(endpoint.datagrams, now)
 
     def wait_for_station(self) -> None:
         """Until the station's first heartbeat. Raises StationSilentError."""
@@ -101,20 +99,13 @@ class Conversation:
     def listen(self, timeout: float) -> None:
         """Take what arrives, for at most `timeout` [s]."""
         data = self._endpoint.receive(timeout)
-        frames = self._gateway.receive(data, whole=self._endpoint.datagrams or self._silent(data))
+        frames = self._gateway.receive(data, whole=self._silence.after(data))
         if any(from_station(frame) for frame in frames):
             self._endpoint.accept_peer()
             self._heard, self._heard_tick = self.now(), self._gateway.tick
         self._recorder.frames(self._gateway.time_us, [frame.raw for frame in frames])
         if not self._gateway.answered:
             self._look_around()
-
-    def _silent(self, data: bytes) -> bool:
-        """On a stream a silence ends an unfinished frame, as the datagram's end does on UDP."""
-        now = self.now()
-        if data:
-            self._last_byte = now
-        return now - self._last_byte >= STREAM_SILENCE
 
     def _look_around(self) -> None:
         """Send what others than the loop asked for, and look after those who watch."""

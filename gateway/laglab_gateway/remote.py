@@ -11,7 +11,7 @@ from laglab_gateway.recorder import Recorder
 from laglab_gateway.relay import Relay
 from laglab_gateway.side import Outcome
 from laglab_gateway.watch import Watch
-from laglab_protocol import Endpoint, EndReason, Frame
+from laglab_protocol import Endpoint, EndReason, Frame, Silence
 
 
 class RobotLine:
@@ -21,6 +21,7 @@ class RobotLine:
         self._relay = relay
         self._endpoint = endpoint
         self._patience = patience
+        self._silence = Silence(endpoint.datagrams)
         self._heard = monotonic()
 
     def start(self) -> None:
@@ -43,9 +44,7 @@ class RobotLine:
 
     def _listen(self, timeout: float) -> list[Frame]:
         data = self._endpoint.receive(timeout)
-        # A silence ends an unfinished frame on a stream as the datagram's end does on UDP.
-        whole = self._endpoint.datagrams or not data
-        frames = self._relay.receive_from_robot(data, whole)
+        frames = self._relay.receive_from_robot(data, whole=self._silence.after(data))
         if frames:
             self._endpoint.accept_peer()
         return frames

@@ -34,6 +34,7 @@ from laglab_protocol.messages import (
 from laglab_protocol.receiver import Counters, Receiver
 from laglab_protocol.sender import Sender
 from laglab_protocol.signing import EVERY_MESSAGE
+from laglab_protocol.silence import Silence
 from laglab_protocol.standard import (
     STATION_HEARTBEAT,
     Attitude,
@@ -105,6 +106,7 @@ __all__ = [
     "Refusal",
     "Sender",
     "SerialPair",
+    "Silence",
     "Statustext",
     "SysStatus",
     "SystemTime",

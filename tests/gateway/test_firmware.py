@@ -106,6 +106,23 @@ def test_it_conforms_on_a_line_at_the_pace_of_a_real_one(
     assert report.conforms, report.table()
 
 
+@pytest.mark.slow
+def test_the_kits_command_waits_for_it(
+    start: Callable[..., Any], firmware: Path, tmp_path: Path
+) -> None:
+    """As its README says: first the kit, which makes the port, then the robot."""
+    url, options = f"pty://{tmp_path}/port", ("--side", "robot", "--pace", "realtime")
+    kit = start(sys.executable, "-m", "laglab", "conform", url, *options)
+    assert f"testing the robot at {url}" in kit.stderr.readline()
+    while not (tmp_path / "port").exists():
+        time.sleep(0.01)
+    start(firmware, tmp_path / "port")
+
+    told, _ = kit.communicate(timeout=50)
+    assert kit.returncode == 0, told
+    assert "the robot conforms" in told
+
+
 def test_a_request_to_another_robot_is_not_answered(line: Line) -> None:
     begin(line)
     line.say(request(target=2))

@@ -1,11 +1,9 @@
 """The items of a controller: we are its robot, and stand at the origin."""
 
 import math
-import statistics
-import time
 
 from laglab_protocol.conform.framing import RECEIVING, SENDING, SIGNING
-from laglab_protocol.conform.items import Item, refused
+from laglab_protocol.conform.items import SOON, Item, reacts_soon, refused
 from laglab_protocol.conform.session import NoReactionError, Session
 from laglab_protocol.frame import Frame
 from laglab_protocol.message import Message
@@ -23,9 +21,6 @@ from laglab_protocol.messages import (
     Tick,
 )
 from laglab_protocol.standard import Heartbeat
-
-SOON = 0.25
-"""[s] Within this time, as a median, a controller answers."""
 
 
 class ControllerSession(Session):
@@ -122,16 +117,6 @@ def _answers_once(session: ControllerSession) -> str | None:
     return None if len(answers) == 1 else f"tick {tick} is answered {len(answers)} times"
 
 
-def _soon(session: ControllerSession) -> str | None:
-    times = []
-    for _ in range(9):
-        started = time.monotonic()
-        session.exchange()
-        times.append(time.monotonic() - started)
-    median = statistics.median(times)
-    return f"median {median:.3f} s" if median > SOON else None
-
-
 def _missing(session: Session, _: object) -> bytes:
     """A tick that tells of a measurement that did not arrive."""
     assert isinstance(session, ControllerSession)
@@ -145,7 +130,7 @@ def _backwards(session: ControllerSession) -> str | None:
     old = session.tick - 2
     session.send(Tick(old, 0))
     found = session.listen(
-        session.patience.refuse,
+        session.refusal,
         lambda frame: isinstance(frame.message, Command) and frame.message.tick == old,
     )
     if found:
@@ -176,7 +161,7 @@ ITEMS: list[Item[ControllerSession]] = [
     Item("lock-step", "time does not go back", _backwards),
     Item("lock-step", "commands are meant for the robot", _aims),
     Item("lock-step", "commands are finite", _finite),
-    Item("timing", f"it answers within {SOON} s", _soon),
+    Item("timing", f"it answers within {SOON} s", reacts_soon),
     *SIGNING,
     *SENDING,
     Item("lock-step", "it answers END once", _ends),

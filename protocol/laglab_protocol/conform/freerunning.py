@@ -13,13 +13,14 @@ from laglab_protocol.conform.robot import (
     NOT_MEANT,
     STAMPED,
     RobotSession,
+    is_after,
     is_tick,
     ticks,
 )
 from laglab_protocol.conform.services import SERVICES
 from laglab_protocol.conform.session import NoReactionError
 from laglab_protocol.frame import Frame
-from laglab_protocol.messages import Measurement, Tick
+from laglab_protocol.messages import Measurement
 
 UNEVEN = 0.25
 """By how much the ticks a second may differ within a few seconds, as a share."""
@@ -44,7 +45,7 @@ class FreeRunningSession(RobotSession):
         self.followed = self.tick
         super().go_on()
         if self.tick == self.followed:
-            self.listen(self.patience.react, partial(_is_after, self.followed))
+            self.listen(self.patience.react, partial(is_after, self.followed))
             super().go_on()
 
     def exchange(self) -> None:
@@ -56,13 +57,9 @@ class FreeRunningSession(RobotSession):
 def _goes_on(session: FreeRunningSession) -> str | None:
     for _ in range(3):
         last = ticks(session)[-1].tick
-        if not session.listen(session.patience.react, partial(_is_after, last)):
+        if not session.listen(session.patience.react, partial(is_after, last)):
             return f"no tick comes after {last}, though it is to wait for nobody"
     return None
-
-
-def _is_after(tick: int, frame: Frame) -> bool:
-    return isinstance(frame.message, Tick) and frame.message.tick > tick
 
 
 def _even(session: FreeRunningSession) -> str | None:

@@ -1,5 +1,6 @@
 """Items, and how they are carried out one after another."""
 
+import statistics
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -8,6 +9,9 @@ from typing import Generic, TypeVar
 from laglab_protocol.conform.forge import Forged
 from laglab_protocol.conform.report import Result, Verdict
 from laglab_protocol.conform.session import DoesNotApplyError, NoReactionError, Session
+
+SOON = 0.25
+"""[s] Within this time a peer in lock-step reacts."""
 
 AnySession = TypeVar("AnySession", bound=Session, contravariant=True)
 
@@ -62,6 +66,17 @@ def _result(item: Item[AnySession], session: AnySession) -> Result:
         reason += f" (its run had ended at tick {ended.tick}: let it run longer)"
     seconds = time.monotonic() - started
     return Result(item.group, item.name, item.mandatory, verdict, reason, seconds)
+
+
+def reacts_soon(session: Session) -> str | None:
+    """Nine ordinary exchanges: as a median, each must be over within `SOON`."""
+    times = []
+    for _ in range(9):
+        started = time.monotonic()
+        session.exchange()
+        times.append(time.monotonic() - started)
+    median = statistics.median(times)
+    return f"median {median:.3f} s" if median > SOON else None
 
 
 Mangle = Callable[[Session, Forged], bytes]

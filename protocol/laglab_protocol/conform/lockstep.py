@@ -1,11 +1,9 @@
 """The items of a robot in lock-step: each of its ticks waits for the command stamped with it."""
 
-import statistics
-import time
 from itertools import pairwise
 
 from laglab_protocol.conform.framing import RECEIVING, SENDING, SIGNING
-from laglab_protocol.conform.items import Item, refused
+from laglab_protocol.conform.items import SOON, Item, reacts_soon, refused
 from laglab_protocol.conform.robot import (
     BEGINS,
     ENDS,
@@ -15,6 +13,7 @@ from laglab_protocol.conform.robot import (
     Batch,
     RobotSession,
     batches,
+    is_after,
     is_tick,
     measurements,
     ticks,
@@ -24,15 +23,12 @@ from laglab_protocol.conform.session import Session
 from laglab_protocol.frame import Frame
 from laglab_protocol.messages import Command, Tick
 
-SOON = 0.25
-"""[s] Within this time, as a median, a robot goes on after an answer."""
-
 
 class LockstepSession(RobotSession):
     """Its station. The reaction to the command for its tick is its next tick."""
 
     def is_reaction(self, frame: Frame) -> bool:
-        return isinstance(frame.message, Tick) and frame.message.tick > self.tick
+        return is_after(self.tick, frame)
 
 
 def _repeats(session: LockstepSession) -> str | None:
@@ -82,16 +78,6 @@ def _incomplete(session: LockstepSession) -> str | None:
     return None
 
 
-def _soon(session: LockstepSession) -> str | None:
-    times = []
-    for _ in range(9):
-        started = time.monotonic()
-        session.exchange()
-        times.append(time.monotonic() - started)
-    median = statistics.median(times)
-    return f"median {median:.3f} s" if median > SOON else None
-
-
 def _at(session: Session, offset: int) -> Command:
     assert isinstance(session, LockstepSession)
     return session.command(max(session.tick + offset, 0))
@@ -115,7 +101,7 @@ ITEMS: list[Item[LockstepSession]] = [
     Item("lock-step", "an answer waits for its estimate", _incomplete),
     NOT_MEANT,
     NOT_FINITE,
-    Item("timing", f"it goes on within {SOON} s", _soon),
+    Item("timing", f"it goes on within {SOON} s", reacts_soon),
     *SERVICES,
     *SIGNING,
     Item("lock-step", "a repeat brings the same messages", _repeats_the_same),

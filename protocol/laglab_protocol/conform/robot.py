@@ -56,11 +56,10 @@ class RobotSession(Session):
     def go_on(self) -> None:
         self.tick = max(each.tick for each in ticks(self))
 
-    def ask(self, question: Message, answer: type[Message], seconds: float | None = None) -> Frame:
+    def ask(self, question: Message, answer: type[Message]) -> Frame:
         """The first answer of this kind. Raises NoReactionError."""
         self.send(question)
-        patience = self.patience.react if seconds is None else seconds
-        found = self.listen(patience, lambda frame: isinstance(frame.message, answer))
+        found = self.listen(self.patience.react, lambda frame: isinstance(frame.message, answer))
         if found is None:
             raise NoReactionError(f"no {answer.__name__} after {type(question).__name__}")
         return found
@@ -79,6 +78,10 @@ def is_tick(frame: Frame) -> bool:
     return isinstance(frame.message, Tick)
 
 
+def is_after(tick: int, frame: Frame) -> bool:
+    return isinstance(frame.message, Tick) and frame.message.tick > tick
+
+
 def ticks(session: RobotSession) -> list[Tick]:
     return [frame.message for frame in session.heard if isinstance(frame.message, Tick)]
 
@@ -91,14 +94,14 @@ def measurements(session: RobotSession) -> list[Measurement]:
 
 def batches(session: RobotSession) -> list[tuple[Batch, Tick]]:
     """Every tick but the first, which we may have heard in part, with its measurements."""
-    batches, waiting = [], Batch()
+    whole, waiting = [], Batch()
     for frame in session.heard:
         if isinstance(frame.message, Measurement):
             waiting.append(frame.message)
         elif isinstance(frame.message, Tick):
-            batches.append((waiting, frame.message))
+            whole.append((waiting, frame.message))
             waiting = Batch()
-    return batches[1:]
+    return whole[1:]
 
 
 def _begins(session: RobotSession) -> str | None:

@@ -14,6 +14,7 @@ from laglab_protocol.message import Message
 from laglab_protocol.messages import End
 from laglab_protocol.receiver import Receiver
 from laglab_protocol.signing import Signer, Verifier
+from laglab_protocol.silence import Silence
 
 
 class Patience(NamedTuple):
@@ -23,10 +24,6 @@ class Patience(NamedTuple):
     appear: float = 10.0
     react: float = 2.0
     refuse: float = 0.4
-
-
-STREAM_SILENCE = 0.05
-"""[s] Bytes that follow each other on a serial line, however slow, come sooner than this."""
 
 
 class NoReactionError(Exception):
@@ -55,7 +52,7 @@ class Session(ABC):
         """Bytes in no frame before the first frame: we may have come in the middle of one."""
         self._sequence = 0
         self._slowest = 0.0
-        self._last_byte = time.monotonic()
+        self._silence = Silence(endpoint.datagrams)
 
     @property
     def refusal(self) -> float:
@@ -108,7 +105,7 @@ class Session(ABC):
     def _receive(self, seconds: float) -> list[Frame]:
         data = self.endpoint.receive(seconds)
         frames = self.receiver.receive(data)
-        if self.endpoint.datagrams or self._silent(data):
+        if self._silence.after(data):
             frames += self.receiver.end_datagram()
         if frames:
             self.endpoint.accept_peer()
@@ -116,13 +113,6 @@ class Session(ABC):
                 self.noise_before = self.receiver.counters.noise
             self.heard += frames
         return frames
-
-    def _silent(self, data: bytes) -> bool:
-        """On a line a frame comes in pieces: only a real silence says that the rest is lost."""
-        now = time.monotonic()
-        if data:
-            self._last_byte = now
-        return now - self._last_byte >= STREAM_SILENCE
 
     def reacts(self, seconds: float) -> bool:
         """Whether the reaction comes; if so the next stimulus is another one."""
