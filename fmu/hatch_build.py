@@ -40,7 +40,7 @@ class FmuBuildHook(BuildHookInterface[Any]):
         build_data["pure_python"] = _for_all_platforms()
         build_data["tag"] = f"py3-none-{_platform_tag()}"
         if version == "standard":
-            for folder in ("src", "content", "benchmark"):
+            for folder in ("src", "content"):
                 build_data["force_include"][str(HERE / folder)] = f"laglab_fmu/{folder}"
 
 

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from laglab_controller import StationConfig, read_session, shadow
+from laglab_control import StationConfig
+from laglab_station import read_session, shadow
 
 
 def main(path):

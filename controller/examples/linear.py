@@ -6,7 +6,7 @@ it; given the measurements without delay, delayed-ekf is the textbook's filter.
 
 import numpy as np
 
-from laglab_controller import (
+from laglab_control import (
     DelayedEkf,
     Ekf,
     NonlinearModel,

@@ -10,7 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from laglab_protocol.dialect import dialect_path, generate
+from laglab_protocol.dialect.mavgen import dialect_path, generate
 
 HERE = Path(__file__).parent
 STRICT = ("-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror")

@@ -9,12 +9,7 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 from laglab_fmu.compiler import Platform, fmi_headers
-from laglab_fmu.description import (
-    TOKEN,
-    model_description_2,
-    model_description_3,
-    xml_text,
-)
+from laglab_fmu.description import TOKEN, model_description_2, model_description_3, xml_text
 from laglab_fmu.errors import BuildError
 from laglab_fmu.header import variables_header
 from laglab_fmu.units import TYPES

@@ -1,7 +1,5 @@
 """The robot's side of the link: a plant behind two delayed channels, paced by station or clock."""
 
-from laglab_gateway.channel import Channel
-from laglab_gateway.conversation import Link, Patience
 from laglab_gateway.core import Gateway
 from laglab_gateway.drive import Safety
 from laglab_gateway.errors import (
@@ -11,13 +9,18 @@ from laglab_gateway.errors import (
     TimelineError,
     TraceError,
 )
-from laglab_gateway.fates import Fates, RandomFates
-from laglab_gateway.impairments import IDEAL, Burst, ExtraDelay, Impairments
-from laglab_gateway.linklog import RecordedFates, read_link_log
-from laglab_gateway.lockstep import serve_lockstep
-from laglab_gateway.plant import FmuPlant, Plant
-from laglab_gateway.realtime import Lateness, serve_realtime
-from laglab_gateway.recorder import (
+from laglab_gateway.link.channel import Channel
+from laglab_gateway.link.fates import Fates, RandomFates
+from laglab_gateway.link.impairments import IDEAL, Burst, ExtraDelay, Impairments
+from laglab_gateway.link.log import RecordedFates, read_link_log
+from laglab_gateway.link.timeline import Direction, Event
+from laglab_gateway.loops.conversation import Link, Patience
+from laglab_gateway.loops.lockstep import serve_lockstep
+from laglab_gateway.loops.realtime import Lateness, serve_realtime
+from laglab_gateway.loops.remote import serve_remote
+from laglab_gateway.loops.watch import Watch, Watcher
+from laglab_gateway.plant import Plant, Reading
+from laglab_gateway.record.recorder import (
     LINK_FILE,
     TIMING_FILE,
     TLOG_FILE,
@@ -26,8 +29,8 @@ from laglab_gateway.recorder import (
     NoRecorder,
     Recorder,
 )
+from laglab_gateway.record.trace import Trace, TraceRow, read_trace
 from laglab_gateway.relay import Relay
-from laglab_gateway.remote import serve_remote
 from laglab_gateway.services import (
     Parameter,
     Parameters,
@@ -36,9 +39,6 @@ from laglab_gateway.services import (
     standard_parameters,
 )
 from laglab_gateway.side import GatewayConfig, Outcome, RobotSide
-from laglab_gateway.timeline import Direction, Event
-from laglab_gateway.trace import Trace, TraceRow, read_trace
-from laglab_gateway.watch import Watch, Watcher
 
 __all__ = [
     "IDEAL",
@@ -53,7 +53,6 @@ __all__ = [
     "ExtraDelay",
     "Fates",
     "FileRecorder",
-    "FmuPlant",
     "Gateway",
     "GatewayConfig",
     "GatewayError",
@@ -67,6 +66,7 @@ __all__ = [
     "Patience",
     "Plant",
     "RandomFates",
+    "Reading",
     "RecordedFates",
     "Recorder",
     "Relay",

@@ -10,12 +10,12 @@ n = 0 it waits for the answer to this tick, so that n = 0 means no delay.
 from collections.abc import Mapping
 
 from laglab_gateway.drive import speeds, supervise
-from laglab_gateway.fates import Fates
+from laglab_gateway.link.fates import Fates
+from laglab_gateway.link.timeline import Direction
 from laglab_gateway.plant import Plant
+from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import RobotState, Services, standard_parameters
 from laglab_gateway.side import GatewayConfig, RobotSide
-from laglab_gateway.timeline import Direction
-from laglab_gateway.trace import TraceRow
 from laglab_protocol import Codec, Measurement
 
 

@@ -12,7 +12,7 @@ import math
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 
-from laglab_gateway.impairments import STRICT, NotNegative, Seconds
+from laglab_gateway.link.impairments import STRICT, NotNegative, Seconds
 from laglab_protocol import NO_COMMAND, Command
 
 FASTEST = 1e6

@@ -10,11 +10,11 @@ from collections import deque
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from laglab_gateway.fates import Fates
+from laglab_gateway.link.fates import Fates
+from laglab_gateway.link.timeline import Direction
+from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import RobotState, Services
 from laglab_gateway.side import GatewayConfig, Outcome, RobotSide, reason_of
-from laglab_gateway.timeline import Direction
-from laglab_gateway.trace import TraceRow
 from laglab_protocol import (
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,

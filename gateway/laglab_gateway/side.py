@@ -11,14 +11,14 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from laglab_gateway.audit import Audit, DirectionAudit
-from laglab_gateway.channel import Channel
 from laglab_gateway.drive import Drive, Safety, follow, refusal
-from laglab_gateway.fates import Fates, Kind
-from laglab_gateway.linklog import LinkRow
+from laglab_gateway.link.channel import Channel
+from laglab_gateway.link.fates import Fates, Kind
+from laglab_gateway.link.log import LinkRow
+from laglab_gateway.link.timeline import Direction
+from laglab_gateway.record.audit import Audit, DirectionAudit
+from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import RobotState, Services
-from laglab_gateway.timeline import Direction
-from laglab_gateway.trace import TraceRow
 from laglab_protocol import (
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,

@@ -1,6 +1,7 @@
 """The link: the dialect's messages, their frames, and the endpoints they travel between."""
 
 from laglab_protocol.endpoints import Endpoint, SerialPair, open_endpoint
+from laglab_protocol.endpoints.silence import Silence
 from laglab_protocol.errors import (
     BadUrlError,
     DialectError,
@@ -13,10 +14,11 @@ from laglab_protocol.errors import (
     ProtocolError,
     UnsignedLinkError,
 )
-from laglab_protocol.frame import Frame, Refusal
-from laglab_protocol.keys import Codec, make_key, read_key, refuse_open_door
-from laglab_protocol.message import Message
-from laglab_protocol.messages import (
+from laglab_protocol.framing.frame import Frame, Refusal
+from laglab_protocol.framing.receiver import Counters, Receiver
+from laglab_protocol.framing.sender import Sender
+from laglab_protocol.messages.base import Message
+from laglab_protocol.messages.loop import (
     NO_COMMAND,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
@@ -31,11 +33,7 @@ from laglab_protocol.messages import (
     Tick,
     message_type,
 )
-from laglab_protocol.receiver import Counters, Receiver
-from laglab_protocol.sender import Sender
-from laglab_protocol.signing import EVERY_MESSAGE
-from laglab_protocol.silence import Silence
-from laglab_protocol.standard import (
+from laglab_protocol.messages.standard import (
     STATION_HEARTBEAT,
     Attitude,
     AutopilotVersion,
@@ -57,6 +55,8 @@ from laglab_protocol.standard import (
     SystemTime,
     Timesync,
 )
+from laglab_protocol.signing.keys import Codec, make_key, read_key, refuse_open_door
+from laglab_protocol.signing.signature import EVERY_MESSAGE
 from laglab_protocol.tlog import TlogError, read_tlog, tlog_record
 
 __all__ = [

@@ -9,7 +9,7 @@ import runpy
 import sys
 from pathlib import Path
 
-from laglab_protocol.dialect import offer_to_pymavlink
+from laglab_protocol.dialect.mavgen import offer_to_pymavlink
 
 
 def main(arguments: list[str]) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from laglab_protocol.errors import ProtocolError
-from laglab_protocol.frame import Frame, decode
+from laglab_protocol.framing.frame import Frame, decode
 
 STAMP_SIZE = 8
 

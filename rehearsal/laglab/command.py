@@ -18,10 +18,10 @@ from laglab.commands import (
     sides,
 )
 from laglab.errors import LaglabError, RunError, ScenarioError
-from laglab.processes import SIDE_ERRORS
-from laglab_controller import StationError
+from laglab.run.processes import SIDE_ERRORS
 from laglab_gateway import RobotSilentError, StationSilentError
 from laglab_protocol import FarEndGoneError, FarEndStalledError
+from laglab_station import StationError
 
 app = typer.Typer(
     help="A rehearsal rig for robots controlled across a network.",

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from laglab_controller import Controller, Law, Measured, StationConfig
+from laglab_control import Controller, Law, Measured, StationConfig
 
 Array = NDArray[np.float64]
 

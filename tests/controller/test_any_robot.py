@@ -9,8 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import astuple
 
-from laglab_controller import ESTIMATORS, Station, StationConfig
+from laglab_control import ESTIMATORS, StationConfig
 from laglab_protocol import Command, End, Measurement, Message, Receiver, Sender, Tick, Timesync
+from laglab_station import Station
 
 NUMBERS = st.floats() | st.floats(-10, 10)
 TICKS = st.integers(0, 2**32 - 1) | st.integers(0, 30)

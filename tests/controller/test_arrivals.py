@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from laglab_controller import (
+from laglab_control import (
     DelayedEkf,
     Ekf,
     Measured,

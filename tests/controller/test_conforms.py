@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from laglab_controller import Station, StationConfig, run_station
+from laglab_conformance import conform
+from laglab_control import StationConfig
 from laglab_protocol import (
     STATION_COMPONENT,
     STATION_SYSTEM,
@@ -15,7 +16,7 @@ from laglab_protocol import (
     make_key,
     open_endpoint,
 )
-from laglab_protocol.conform import conform
+from laglab_station import Station, run_station
 
 
 @pytest.mark.slow

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from laglab_controller import Measured, NonlinearModel, PopfExact
+from laglab_control import Measured, NonlinearModel, PopfExact
 
 F = np.array([[1.0, 0.1], [-0.2, 0.9]])
 Q = np.array([[2e-2, 1e-2], [1e-2, 4e-2]])

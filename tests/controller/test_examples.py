@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from laglab_controller import Controller, StationConfig
+from laglab_control import Controller, StationConfig
 from laglab_protocol import Command, Measurement, Sender, Tick, tlog_record
 
 COMPONENT = Path(__file__).parents[2] / "controller"

@@ -5,16 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from laglab_controller import (
-    Controller,
-    Echo,
-    Law,
-    Measured,
-    RobotModel,
-    Station,
-    StationConfig,
-)
+from laglab_control import Controller, Echo, Law, Measured, RobotModel, StationConfig
 from laglab_protocol import NO_COMMAND, Measurement, Receiver, Sender, Tick
+from laglab_station import Station
 
 START = (-3.0, -3.0, 0.0)
 LAW = Law()

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from laglab_controller import Controller, Law, Measured, StationConfig
+from laglab_control import Controller, Law, Measured, StationConfig
 
 FIG7 = {"start": (-1.5, -2.0, np.pi / 2), "n": 15, "m": 25}
 

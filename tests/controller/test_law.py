@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from laglab_controller import Drive, Law
+from laglab_control import Drive, Law
 
 coordinate = st.floats(-10, 10)
 poses = st.tuples(coordinate, coordinate, coordinate).map(np.array)

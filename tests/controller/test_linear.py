@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from laglab_controller import DelayedEkf, NonlinearModel, ReplayedInputs, constant_delay, replay
+from laglab_control import DelayedEkf, NonlinearModel, ReplayedInputs, constant_delay, replay
 
 F, B = np.array([[1.0, 0.1], [0.0, 0.95]]), np.array([[0.005], [0.1]])
 Q, R = np.array([[2e-3, 1e-3], [1e-3, 4e-3]]), np.array([[0.3]])

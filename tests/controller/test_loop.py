@@ -6,7 +6,7 @@ import time
 import numpy as np
 import pytest
 
-from laglab_controller import RobotSilentError, Station, StationConfig, run_station
+from laglab_control import StationConfig
 from laglab_protocol import (
     Command,
     End,
@@ -17,6 +17,7 @@ from laglab_protocol import (
     Tick,
     open_endpoint,
 )
+from laglab_station import RobotSilentError, Station, run_station
 
 
 @pytest.fixture

@@ -2,7 +2,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from laglab_controller import RobotModel
+from laglab_control import RobotModel
 
 coordinate = st.floats(-100, 100)
 poses = st.tuples(coordinate, coordinate, coordinate).map(np.array)

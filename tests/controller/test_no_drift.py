@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from laglab_controller import (
+from laglab_control import (
     DelayedEkf,
     Popf,
     ReplayedInputs,

@@ -7,18 +7,18 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from laglab_controller import (
+from laglab_control import (
     ESTIMATORS,
     Applied,
     Measured,
     RobotModel,
-    Station,
     StationConfig,
     constant_delay,
     replay,
 )
-from laglab_controller.kalman import Belief, correct
+from laglab_control.estimators.kalman import Belief, correct
 from laglab_protocol import Measurement, Sender, Tick
+from laglab_station import Station
 
 ROBOT = RobotModel()
 OPTIMAL = ["ekf", "delayed-ekf"]

@@ -5,12 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from laglab_controller import (
-    ESTIMATORS,
-    Applied,
-    Measured,
-    RobotModel,
-)
+from laglab_control import ESTIMATORS, Applied, Measured, RobotModel
 
 ROBOT = RobotModel()
 TICKS, M = 40, 6

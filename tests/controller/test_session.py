@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from laglab_controller import Heard, Station, StationConfig, shadow
-from laglab_controller.session import heard
+from laglab_control import StationConfig
 from laglab_protocol import Command, End, Measurement, Receiver, Sender, Tick
+from laglab_station import Heard, Station, shadow
+from laglab_station.session import heard
 
 
 def frames(*messages):

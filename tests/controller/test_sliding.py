@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from laglab_controller.log import append, cut, logged, newest_first
-from laglab_controller.sliding import SlidingProduct
+from laglab_control.past.log import append, cut, logged, newest_first
+from laglab_control.past.sliding import SlidingProduct
 
 pushes_and_pops = st.lists(st.one_of(st.text("abc", max_size=2), st.none()))
 

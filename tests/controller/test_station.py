@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from laglab_controller import ConfigError, Law, RobotModel, Station, StationConfig
+from laglab_control import ConfigError, Law, RobotModel, StationConfig
 from laglab_protocol import (
     NO_COMMAND,
     Command,
@@ -16,6 +16,7 @@ from laglab_protocol import (
     Sender,
     Tick,
 )
+from laglab_station import Station
 
 START = (-3.0, -3.0, 0.5)
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from laglab_fmu.bench import PLAIN, bench
+from laglab.bench.fmu import PLAIN, bench
 
 
 def test_every_way_is_measured(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,13 +8,7 @@ from xml.etree import ElementTree
 import pytest
 
 from laglab_fmu import BuildError, Robot, RobotParameters
-from laglab_fmu.compiler import (
-    FLAGS,
-    compile_library,
-    fmi_headers,
-    host_platform,
-    zig_compiler,
-)
+from laglab_fmu.compiler import FLAGS, compile_library, fmi_headers, host_platform, zig_compiler
 from laglab_fmu.contents import c_files
 from laglab_fmu.description import TOKEN
 from laglab_fmu.host import host_compiler

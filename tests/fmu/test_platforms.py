@@ -9,13 +9,7 @@ from pathlib import Path
 import pytest
 
 from laglab_fmu import BuildError, build_fmus
-from laglab_fmu.compiler import (
-    FLAGS,
-    PLATFORMS,
-    fmi_headers,
-    host_platform,
-    zig_compiler,
-)
+from laglab_fmu.compiler import FLAGS, PLATFORMS, fmi_headers, host_platform, zig_compiler
 from laglab_fmu.contents import c_files
 
 BY_FOLDER = {platform.fmi3_folder: platform for platform in PLATFORMS}

@@ -12,7 +12,7 @@ from mavsdk import ComponentType, Configuration, Mavsdk
 from mavsdk.plugins.mavlink_direct import MavlinkDirect, MavlinkMessage
 from mavsdk.plugins.param import Param, ParamError
 
-from laglab_protocol.dialect import dialect_path
+from laglab_protocol.dialect.mavgen import dialect_path
 
 ARM = {"command": 400, "confirmation": 0, "param1": 1.0, **{f"param{i}": 0.0 for i in range(2, 8)}}
 RESET = {"command": 52100, "confirmation": 0, **{f"param{i}": 0.0 for i in range(1, 8)}}

@@ -8,11 +8,11 @@ import time
 
 import numpy as np
 
-from laglab.inline import InlineEndpoint
-from laglab_controller import Law, RobotModel, Station, StationConfig
+from laglab.run.inline import InlineEndpoint
+from laglab.run.plant import FmuPlant
+from laglab_control import Law, RobotModel, StationConfig
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
-    FmuPlant,
     Gateway,
     GatewayConfig,
     NoRecorder,
@@ -25,6 +25,7 @@ from laglab_gateway import (
     standard_parameters,
 )
 from laglab_protocol import ROBOT_COMPONENT, ROBOT_SYSTEM, Receiver, Sender, open_endpoint
+from laglab_station import Station
 
 START = (-3.0, -2.0, 0.0)
 PARAMETERS = RobotParameters(start=START, noise=False)

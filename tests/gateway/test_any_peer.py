@@ -7,15 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from laglab.run.plant import FmuPlant
 from laglab_fmu import Robot, RobotParameters
-from laglab_gateway import (
-    FmuPlant,
-    Gateway,
-    GatewayConfig,
-    Relay,
-    Services,
-    standard_parameters,
-)
+from laglab_gateway import Gateway, GatewayConfig, Relay, Services, standard_parameters
 from laglab_protocol import (
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
@@ -30,7 +24,7 @@ from laglab_protocol import (
     Sender,
     Tick,
 )
-from laglab_protocol.layout import LAYOUT_OF_ID, Layout
+from laglab_protocol.messages.layout import LAYOUT_OF_ID, Layout
 
 PARAMETERS = RobotParameters(noise=True)
 CONFIG = GatewayConfig(2, 3, 10**6, PARAMETERS.sample_time)

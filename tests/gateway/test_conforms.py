@@ -8,9 +8,11 @@ from typing import Any
 
 import pytest
 
+from laglab.run.plant import FmuPlant
+from laglab_conformance import Pace, conform
+from laglab_conformance import Patience as Quick
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
-    FmuPlant,
     Gateway,
     GatewayConfig,
     NoRecorder,
@@ -18,16 +20,7 @@ from laglab_gateway import (
     serve_lockstep,
     serve_realtime,
 )
-from laglab_protocol import (
-    ROBOT_COMPONENT,
-    ROBOT_SYSTEM,
-    Codec,
-    Endpoint,
-    make_key,
-    open_endpoint,
-)
-from laglab_protocol.conform import Pace, conform
-from laglab_protocol.conform import Patience as Quick
+from laglab_protocol import ROBOT_COMPONENT, ROBOT_SYSTEM, Codec, Endpoint, make_key, open_endpoint
 
 PARAMETERS = RobotParameters(start=(-3.0, -2.0, 0.0), noise=True)
 

@@ -7,8 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
+from laglab.run.plant import FmuPlant
 from laglab_fmu import Robot, RobotParameters
-from laglab_gateway import FmuPlant, Gateway, GatewayConfig, Outcome
+from laglab_gateway import Gateway, GatewayConfig, Outcome
 from laglab_protocol import (
     NO_COMMAND,
     ROBOT_COMPONENT,

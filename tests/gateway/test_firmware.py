@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import pytest
 from msgspec.structs import replace
 
+from laglab_conformance import conform
 from laglab_protocol import (
     NO_COMMAND,
     ROBOT_COMPONENT,
@@ -31,7 +32,6 @@ from laglab_protocol import (
     Tick,
     open_endpoint,
 )
-from laglab_protocol.conform import conform
 
 SPEED = 4.0
 PERIOD = 0.01 / SPEED

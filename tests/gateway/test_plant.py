@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
+from laglab.run.plant import FmuPlant
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
-    FmuPlant,
     Gateway,
     GatewayConfig,
     NoRecorder,

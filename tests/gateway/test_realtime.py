@@ -16,7 +16,7 @@ from laglab_gateway import (
     TraceRow,
     serve_realtime,
 )
-from laglab_gateway.recorder import TimingRow
+from laglab_gateway.record.recorder import TimingRow
 from laglab_protocol import (
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,

@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from laglab.run.plant import FmuPlant
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
     Direction,
     Fates,
     FileRecorder,
-    FmuPlant,
     Gateway,
     GatewayConfig,
     Impairments,
@@ -20,7 +20,7 @@ from laglab_gateway import (
     read_link_log,
     serve_lockstep,
 )
-from laglab_gateway.trace import read_trace
+from laglab_gateway.record.trace import read_trace
 from laglab_protocol import (
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,

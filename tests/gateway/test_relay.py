@@ -35,7 +35,7 @@ from laglab_protocol import (
     Sender,
     Tick,
 )
-from laglab_protocol.generated import laglab as mavlink
+from laglab_protocol.dialect.generated import laglab as mavlink
 
 TS = 0.01
 

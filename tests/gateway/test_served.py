@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from laglab.run.plant import FmuPlant
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
-    FmuPlant,
     Gateway,
     GatewayConfig,
     Safety,
@@ -38,8 +38,8 @@ from laglab_protocol import (
     Sender,
     open_endpoint,
 )
+from laglab_protocol.dialect.generated import laglab as mavlink
 from laglab_protocol.endpoints import tty
-from laglab_protocol.generated import laglab as mavlink
 
 PARAMETERS = RobotParameters(start=(-3.0, -2.0, 0.0), noise=False)
 SAMPLE_TIME = PARAMETERS.sample_time

@@ -39,7 +39,7 @@ from laglab_protocol import (
     Timesync,
     message_type,
 )
-from laglab_protocol.generated import laglab as mavlink
+from laglab_protocol.dialect.generated import laglab as mavlink
 
 STATE = RobotState(1_500_000, 3.0, 4.0, 0.0, 2.0, 0.5)
 GCS = (255, 190)

@@ -4,12 +4,12 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Protocol
 
+from laglab_conformance.forge import Forged
+from laglab_conformance.framing import UNKNOWN_FLAG, UNKNOWN_ID
 from laglab_protocol import Frame, Message
-from laglab_protocol.conform.forge import Forged
-from laglab_protocol.conform.framing import UNKNOWN_FLAG, UNKNOWN_ID
-from laglab_protocol.frame import HEADER_SIZE, Refusal, decode
-from laglab_protocol.layout import LAYOUT_OF_ID
-from laglab_protocol.signing import signing_time
+from laglab_protocol.framing.frame import HEADER_SIZE, Refusal, decode
+from laglab_protocol.messages.layout import LAYOUT_OF_ID
+from laglab_protocol.signing.signature import signing_time
 
 
 class Peer(Protocol):

@@ -13,15 +13,11 @@ from pathlib import Path
 
 import atheris
 
-with atheris.instrument_imports(include=["laglab_protocol", "laglab_gateway", "laglab_controller"]):
-    from laglab_controller import Station, StationConfig
-    from laglab_gateway import (
-        GatewayConfig,
-        Relay,
-        Safety,
-        Services,
-        standard_parameters,
-    )
+with atheris.instrument_imports(
+    include=["laglab_protocol", "laglab_gateway", "laglab_station", "laglab_control"]
+):
+    from laglab_control import StationConfig
+    from laglab_gateway import GatewayConfig, Relay, Safety, Services, standard_parameters
     from laglab_gateway.services import RobotState
     from laglab_protocol import (
         ROBOT_COMPONENT,
@@ -33,12 +29,13 @@ with atheris.instrument_imports(include=["laglab_protocol", "laglab_gateway", "l
         Receiver,
         Sender,
     )
-    from laglab_protocol.dialect import dialect_path
-    from laglab_protocol.frame import Frame
-    from laglab_protocol.layout import LAYOUT_OF_ID
-    from laglab_protocol.lint import lint
-    from laglab_protocol.messages import Command, End, Estimate, Measurement, Tick
-    from laglab_protocol.signing import Signer, Timestamps, Verifier
+    from laglab_protocol.dialect.lint import lint
+    from laglab_protocol.dialect.mavgen import dialect_path
+    from laglab_protocol.framing.frame import Frame
+    from laglab_protocol.messages.layout import LAYOUT_OF_ID
+    from laglab_protocol.messages.loop import Command, End, Estimate, Measurement, Tick
+    from laglab_protocol.signing.signature import Signer, Timestamps, Verifier
+    from laglab_station import Station
 
 LARGEST_FRAME = 10 + 255 + 2 + 13
 REQUESTS = [LAYOUT_OF_ID[number] for number in (4, 20, 21, 23, 75, 76, 111)]

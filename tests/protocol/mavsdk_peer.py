@@ -10,7 +10,7 @@ import sys
 from mavsdk import ComponentType, Configuration, Mavsdk
 from mavsdk.plugins.mavlink_direct import MavlinkDirect, MavlinkMessage
 
-from laglab_protocol.dialect import dialect_path
+from laglab_protocol.dialect.mavgen import dialect_path
 
 
 def tell(message: MavlinkMessage, _: object) -> None:

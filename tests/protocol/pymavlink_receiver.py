@@ -1,6 +1,6 @@
 """pymavlink's own receiver, as its mavutil uses it: one parser for all datagrams."""
 
-from laglab_protocol.generated import laglab as dialect
+from laglab_protocol.dialect.generated import laglab as dialect
 
 
 def frames_of_pymavlink(datagrams: list[bytes]) -> list[bytes]:

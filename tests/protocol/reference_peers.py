@@ -8,6 +8,7 @@ from typing import Self
 
 from msgspec.structs import replace
 
+from laglab_conformance.forge import Forged
 from laglab_protocol import (
     NO_COMMAND,
     AutopilotVersion,
@@ -29,7 +30,6 @@ from laglab_protocol import (
     Sender,
     Tick,
 )
-from laglab_protocol.conform.forge import Forged
 
 from .faulty_intake import INTAKE
 

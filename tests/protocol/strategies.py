@@ -7,7 +7,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from laglab_protocol import Message, message_type
-from laglab_protocol.generated import laglab as dialect
+from laglab_protocol.dialect.generated import laglab as dialect
 
 FLOATS = {
     "f": st.floats(width=32, allow_nan=False),

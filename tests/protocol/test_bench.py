@@ -1,6 +1,6 @@
 """The bench measures what it says; that it is fast is for the bench to show, not for a test."""
 
-from laglab_protocol.bench import bench_codec
+from laglab.bench.codec import bench_codec
 
 
 def test_every_row_is_measured() -> None:

@@ -10,9 +10,9 @@ from string import Template
 import pytest
 from msgspec.structs import astuple
 
-from laglab_protocol.dialect import dialect_path, generate
-from laglab_protocol.generated import laglab as dialect
-from laglab_protocol.layout import layout_of
+from laglab_protocol.dialect.generated import laglab as dialect
+from laglab_protocol.dialect.mavgen import dialect_path, generate
+from laglab_protocol.messages.layout import layout_of
 
 from .golden import GOLDEN, Golden
 

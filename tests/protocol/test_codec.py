@@ -22,9 +22,9 @@ from laglab_protocol import (
     Sender,
     Tick,
 )
-from laglab_protocol.frame import Refusal, decode
-from laglab_protocol.generated import laglab as dialect
-from laglab_protocol.layout import layout_of
+from laglab_protocol.dialect.generated import laglab as dialect
+from laglab_protocol.framing.frame import Refusal, decode
+from laglab_protocol.messages.layout import layout_of
 
 from .encoding import encode
 from .strategies import messages

@@ -9,17 +9,9 @@ from xml.etree import ElementTree
 
 import pytest
 
+from laglab_conformance import Pace, Patience, Report, conform, controller, freerunning, lockstep
+from laglab_conformance.items import Item
 from laglab_protocol import make_key, open_endpoint
-from laglab_protocol.conform import (
-    Pace,
-    Patience,
-    Report,
-    conform,
-    controller,
-    freerunning,
-    lockstep,
-)
-from laglab_protocol.conform.items import Item
 
 from .reference_peers import Controller, FreeRunningRobot, Robot
 

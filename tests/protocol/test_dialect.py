@@ -7,15 +7,15 @@ from pathlib import Path
 import pytest
 
 from laglab_protocol import DialectError, EndReason, message_type
-from laglab_protocol.dialect import (
+from laglab_protocol.dialect.generated import laglab as dialect
+from laglab_protocol.dialect.mavgen import (
     GENERATED,
     LANGUAGES,
     dialect_path,
     generate,
     generate_into,
 )
-from laglab_protocol.generated import laglab as dialect
-from laglab_protocol.messages import WRITTEN_OUT
+from laglab_protocol.messages.loop import WRITTEN_OUT
 
 PYTHON_TYPE = {"float": float, "double": float, "char": bytes}
 

@@ -7,9 +7,9 @@ import pytest
 from msgspec.structs import astuple
 
 from laglab_protocol import Message
-from laglab_protocol.frame import Frame, decode
-from laglab_protocol.generated import laglab as dialect
-from laglab_protocol.layout import layout_of
+from laglab_protocol.dialect.generated import laglab as dialect
+from laglab_protocol.framing.frame import Frame, decode
+from laglab_protocol.messages.layout import layout_of
 
 from .encoding import encode
 from .golden import GOLDEN, Golden

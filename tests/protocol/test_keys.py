@@ -20,8 +20,8 @@ from laglab_protocol import (
     read_key,
     refuse_open_door,
 )
-from laglab_protocol.keys import StoredTimestamps
-from laglab_protocol.signing import AHEAD, CLOCK_EVERY, Signer, Verifier
+from laglab_protocol.signing.keys import StoredTimestamps
+from laglab_protocol.signing.signature import AHEAD, CLOCK_EVERY, Signer, Verifier
 
 KEY = bytes(range(32))
 STREAM = (0, 200, 190)

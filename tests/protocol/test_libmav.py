@@ -11,8 +11,8 @@ import pytest
 from msgspec.structs import asdict
 
 from laglab_protocol import Endpoint, Frame, Message, Receiver, Sender, open_endpoint
-from laglab_protocol.dialect import carried_dialects, dialect_path
-from laglab_protocol.layout import layout_of
+from laglab_protocol.dialect.mavgen import carried_dialects, dialect_path
+from laglab_protocol.messages.layout import layout_of
 
 from .golden import GOLDEN, Golden
 

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from laglab_protocol import DialectError
-from laglab_protocol.dialect import dialect_path, generate
-from laglab_protocol.lint import Finding, lint
+from laglab_protocol.dialect.lint import Finding, lint
+from laglab_protocol.dialect.mavgen import dialect_path, generate
 
 GOOD = """<mavlink>
   <include>common.xml</include>

@@ -16,7 +16,7 @@ import pytest
 from msgspec.structs import asdict, astuple
 
 from laglab_protocol import Command, Endpoint, Frame, Receiver, Sender, open_endpoint
-from laglab_protocol.layout import layout_of
+from laglab_protocol.messages.layout import layout_of
 
 from .golden import GOLDEN, Golden
 

@@ -10,13 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from laglab_protocol import (
-    Endpoint,
-    FarEndGoneError,
-    PortBusyError,
-    SerialPair,
-    open_endpoint,
-)
+from laglab_protocol import Endpoint, FarEndGoneError, PortBusyError, SerialPair, open_endpoint
 from laglab_protocol.endpoints.wire import TRANSMIT_BUFFER
 
 BAUD = 57600

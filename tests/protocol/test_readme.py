@@ -4,8 +4,8 @@ import re
 from pathlib import Path
 
 from laglab_protocol import EndReason
-from laglab_protocol.dialect import LANGUAGES
-from laglab_protocol.generated import laglab as dialect
+from laglab_protocol.dialect.generated import laglab as dialect
+from laglab_protocol.dialect.mavgen import LANGUAGES
 
 README = (Path(__file__).parents[2] / "protocol" / "README.md").read_text()
 OURS = [each for number, each in dialect.mavlink_map.items() if number >= 52100]

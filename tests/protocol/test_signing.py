@@ -9,17 +9,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from msgspec.structs import astuple
 
-from laglab_protocol import (
-    Command,
-    Heartbeat,
-    Receiver,
-    Refusal,
-    Sender,
-)
-from laglab_protocol.conform.forge import Forged
-from laglab_protocol.frame import SIGNED
-from laglab_protocol.generated import laglab as dialect
-from laglab_protocol.signing import CLOCK_EVERY, MINUTE, Signer, Timestamps, Verifier
+from laglab_conformance.forge import Forged
+from laglab_protocol import Command, Heartbeat, Receiver, Refusal, Sender
+from laglab_protocol.dialect.generated import laglab as dialect
+from laglab_protocol.framing.frame import SIGNED
+from laglab_protocol.signing.signature import CLOCK_EVERY, MINUTE, Signer, Timestamps, Verifier
 
 from .encoding import encode
 

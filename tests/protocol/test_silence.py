@@ -1,7 +1,7 @@
 """When an unfinished frame is given up, on a clock of the test's own."""
 
 from laglab_protocol import Silence
-from laglab_protocol.silence import STREAM_SILENCE
+from laglab_protocol.endpoints.silence import STREAM_SILENCE
 
 
 def test_on_a_stream_only_a_real_silence_ends_a_frame() -> None:

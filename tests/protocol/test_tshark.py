@@ -8,8 +8,8 @@ import subprocess
 import pytest
 
 from laglab_protocol import Measurement
-from laglab_protocol.dialect import dialect_path, generate
-from laglab_protocol.layout import layout_of
+from laglab_protocol.dialect.mavgen import dialect_path, generate
+from laglab_protocol.messages.layout import layout_of
 
 from .golden import GOLDEN, Golden
 

@@ -11,7 +11,7 @@ import pytest
 from laglab.bench import by_hand
 from laglab.bench.loop import TRANSPORTS, loop_scenario
 from laglab.bench.round_trip import seconds_per_echo, tick_sizes
-from laglab.rehearse import rehearse
+from laglab.run.rehearse import rehearse
 from laglab_gateway import read_trace
 
 

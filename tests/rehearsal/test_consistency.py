@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from laglab.consistency import Sample, chi_square_bounds, samples, verdict
 from laglab.scenario import load
+from laglab.studies.consistency import Sample, chi_square_bounds, samples, verdict
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from laglab.rehearse import Ending, rehearse
+from laglab.run.rehearse import Ending, rehearse
 from laglab.scenario import load
 from laglab_gateway import read_trace
 from laglab_protocol import EndReason, read_tlog

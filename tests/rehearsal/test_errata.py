@@ -1,8 +1,8 @@
 """``laglab errata``: each misprint on its own, and all together."""
 
-from laglab.errata import VARIANTS, costs
 from laglab.scenario import load
-from laglab_controller import Erratum
+from laglab.studies.errata import VARIANTS, costs
+from laglab_control import Erratum
 
 
 def test_what_each_misprint_costs():

@@ -6,10 +6,10 @@ from multiprocessing import get_context
 import numpy as np
 import pytest
 
-from laglab.pose import robot_pose
+from laglab.results.pose import robot_pose
+from laglab.results.summary import goal_errors
+from laglab.run.trials import completed, run_trial
 from laglab.scenario import load
-from laglab.summary import goal_errors
-from laglab.trials import completed, run_trial
 
 SEEDS = 100
 

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from laglab.replaying import replay_session
+from laglab.results.replaying import replay_session
+from laglab.results.summary import loop_estimates
 from laglab.scenario import load
-from laglab.summary import loop_estimates
-from laglab_controller import read_session
 from laglab_gateway import read_trace
+from laglab_station import read_session
 
 Rehearsed = Callable[..., dict[str, Any]]
 

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import pytest
 from pymavlink import mavutil
 
-from laglab.robot_side import shown_parameters
+from laglab.run.robot_side import shown_parameters
 from laglab.scenario import Scenario
 from laglab_protocol import (
     CommandLong,

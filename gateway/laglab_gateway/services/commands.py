@@ -7,7 +7,7 @@ from msgspec.structs import astuple
 
 from laglab_gateway.services.state import Arming
 from laglab_protocol import CommandAck, CommandInt, CommandLong, Frame, Message
-from laglab_protocol.generated import laglab as mavlink
+from laglab_protocol.dialect.generated import laglab as mavlink
 
 ACCEPTED: int = mavlink.MAV_RESULT_ACCEPTED
 REJECTED_FOR_NOW: int = mavlink.MAV_RESULT_TEMPORARILY_REJECTED

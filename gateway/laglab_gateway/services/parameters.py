@@ -18,7 +18,7 @@ from laglab_protocol import (
     ParamSet,
     ParamValue,
 )
-from laglab_protocol.generated import laglab as mavlink
+from laglab_protocol.dialect.generated import laglab as mavlink
 
 NAME_SIZE = 16
 BY_NAME = -1

@@ -5,15 +5,8 @@ from laglab_gateway.services.parameters import Parameters
 from laglab_gateway.services.state import Arming, RobotState
 from laglab_gateway.services.telemetry import REPORTS
 from laglab_gateway.services.timesync import Timesyncing
-from laglab_protocol import (
-    ROBOT_COMPONENT,
-    ROBOT_SYSTEM,
-    Frame,
-    Message,
-    Ping,
-    Timesync,
-)
-from laglab_protocol.generated import laglab as mavlink
+from laglab_protocol import ROBOT_COMPONENT, ROBOT_SYSTEM, Frame, Message, Ping, Timesync
+from laglab_protocol.dialect.generated import laglab as mavlink
 
 ANYBODY = 0
 SECOND_US = 1_000_000

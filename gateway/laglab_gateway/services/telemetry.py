@@ -20,7 +20,7 @@ from laglab_protocol import (
     SysStatus,
     SystemTime,
 )
-from laglab_protocol.generated import laglab as mavlink
+from laglab_protocol.dialect.generated import laglab as mavlink
 
 MAVLINK_VERSION = 3
 VERSION = 0 << 24 | 1 << 16 | 0 << 8 | 255

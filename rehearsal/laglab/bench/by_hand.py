@@ -22,15 +22,15 @@ import numpy as np
 from fmpy.fmi2 import FMU2Slave
 
 from laglab.errors import RunError
-from laglab.processes import Listening, Progress, started
-from laglab.robot_side import robot_parameters
+from laglab.run.processes import Listening, Progress, started
+from laglab.run.robot_side import robot_parameters
+from laglab.run.station_side import station_config
 from laglab.scenario import Scenario
-from laglab.station_side import station_config
-from laglab_controller import Controller, Echo, Measured
+from laglab_control import Controller, Echo, Measured
 from laglab_fmu import fmu_path
 from laglab_gateway import TRACE_FILE, TraceRow
 from laglab_protocol import STATION_COMPONENT, STATION_SYSTEM
-from laglab_protocol.dialect import offer_to_pymavlink
+from laglab_protocol.dialect.mavgen import offer_to_pymavlink
 
 OUTPUTS = ("x", "y", "theta", "x_meas", "y_meas", "theta_meas")
 INPUTS = ("omega_left", "omega_right")

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.table import Table
 
-from laglab_controller import (
+from laglab_control import (
     ESTIMATORS,
     Controller,
     DelayedEkf,

@@ -15,7 +15,7 @@ from rich.table import Table
 from laglab.bench import by_hand
 from laglab.bench.round_trip import seconds_per_echo, tick_sizes
 from laglab.errors import RunError
-from laglab.rehearse import Transport, rehearse
+from laglab.run.rehearse import Transport, rehearse
 from laglab.scenario import Scenario, load
 
 TRANSPORTS: tuple[Transport, ...] = ("udp", "serial")

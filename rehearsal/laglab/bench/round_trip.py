@@ -8,7 +8,7 @@ from multiprocessing.connection import Connection
 from time import perf_counter
 from typing import NamedTuple
 
-from laglab.processes import started
+from laglab.run.processes import started
 from laglab_protocol import Command, Estimate, Measurement, Message, Sender, Tick
 
 POSE = (0.1, 0.1, 0.1)

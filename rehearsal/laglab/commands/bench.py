@@ -6,9 +6,9 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from laglab.bench import codec as codec_bench
 from laglab.bench import filter as filter_bench
 from laglab.extras import STEPPING, require
-from laglab_protocol import bench as codec_bench
 
 Link = Literal["udp", "serial"]
 
@@ -75,7 +75,7 @@ def bench_fmu(
 ) -> None:
     """One step of the FMU: ours, FMPy's two ways, the fleet per robot, a plain C loop."""
     require(STEPPING)
-    from laglab_fmu import bench as fmu_bench  # needs FMPy
+    from laglab.bench import fmu as fmu_bench  # needs FMPy
 
     with Console(stderr=True).status("stepping"):
         rows = fmu_bench.bench(robots, ticks)

@@ -6,8 +6,8 @@ from typing import Annotated
 import typer
 
 from laglab.extras import REHEARSING, require
-from laglab.figure import draw_side_by_side, save
-from laglab.rehearse import SCENARIO_FILE
+from laglab.results.figure import draw_side_by_side, save
+from laglab.run.rehearse import SCENARIO_FILE
 from laglab.scenario import load
 from laglab_gateway import TRACE_FILE, read_trace
 

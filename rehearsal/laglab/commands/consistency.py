@@ -7,15 +7,15 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from laglab.commands.options import on_scenario
 from laglab.commands.run import progress_bar
-from laglab.consistency import samples, verdict
-from laglab.consistency_report import consistency_table, draw_consistency
 from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, require
-from laglab.figure import save
-from laglab.options import on_scenario
+from laglab.results.figure import save
 from laglab.scenario import Scenario
-from laglab_controller import ESTIMATORS
+from laglab.studies.consistency import samples, verdict
+from laglab.studies.consistency_report import consistency_table, draw_consistency
+from laglab_control import ESTIMATORS
 
 JUDGED = ("ekf", "popf", "popf-exact", "delayed-ekf")
 TABLE_WIDTH = 100

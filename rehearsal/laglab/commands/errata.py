@@ -5,11 +5,11 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from laglab.commands.options import on_scenario
 from laglab.commands.run import progress_bar
-from laglab.errata import VARIANTS, costs, costs_table
 from laglab.extras import STEPPING, require
-from laglab.options import on_scenario
 from laglab.scenario import Scenario
+from laglab.studies.errata import VARIANTS, costs, costs_table
 
 TABLE_WIDTH = 104
 """Columns: a narrower terminal shows the table wrapped, but whole."""

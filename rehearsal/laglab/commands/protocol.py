@@ -7,11 +7,11 @@ import typer
 from rich.console import Console
 
 from laglab.commands.run import KeyOption
+from laglab_conformance import Pace, Side
+from laglab_conformance import conform as test_conformance
 from laglab_protocol import make_key
-from laglab_protocol.conform import Pace, Side
-from laglab_protocol.conform import conform as test_conformance
-from laglab_protocol.dialect import LANGUAGES, dialect_path, generate_into
-from laglab_protocol.lint import lint as find_faults
+from laglab_protocol.dialect.lint import lint as find_faults
+from laglab_protocol.dialect.mavgen import LANGUAGES, dialect_path, generate_into
 
 app = typer.Typer(help="The dialect, for those who write the other side.", no_args_is_help=True)
 

@@ -8,12 +8,12 @@ from rich.console import Console
 
 from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, require
-from laglab.figure import save
-from laglab.rehearse import SCENARIO_FILE
-from laglab.replaying import draw_replays, replay_session, replays_table, write_replays
+from laglab.results.figure import save
+from laglab.results.replaying import draw_replays, replay_session, replays_table, write_replays
+from laglab.run.rehearse import SCENARIO_FILE
 from laglab.scenario import load
-from laglab_controller import read_session
 from laglab_gateway import TRACE_FILE, read_trace
+from laglab_station import read_session
 
 TlogArgument = Annotated[
     Path,

@@ -7,12 +7,12 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
+from laglab.commands.options import on_scenario
 from laglab.errors import RunError, ScenarioError
 from laglab.extras import REHEARSING, require
-from laglab.options import on_scenario
-from laglab.rehearse import Ending, Transport, rehearse
-from laglab.report import results_table, warnings, write_results
-from laglab.robot_side import Setup
+from laglab.results.report import results_table, warnings, write_results
+from laglab.run.rehearse import Ending, Transport, rehearse
+from laglab.run.robot_side import Setup
 from laglab.scenario import Scenario
 from laglab_gateway import TRACE_FILE, Trace, TraceError, read_trace
 from laglab_protocol import EndReason

@@ -8,16 +8,16 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from laglab.commands.options import on_scenario
 from laglab.commands.run import EXIT_CODES, KeyOption, PlantOption, progress_bar
 from laglab.extras import STEPPING, require
-from laglab.options import on_scenario
-from laglab.pauses import short_pauses
-from laglab.robot_side import Setup, open_robot
+from laglab.run.pauses import short_pauses
+from laglab.run.robot_side import Setup, open_robot
+from laglab.run.station_side import open_station
 from laglab.scenario import Scenario
-from laglab.station_side import open_station
-from laglab_controller import run_station
 from laglab_gateway import FileRecorder, NoRecorder, Patience
 from laglab_protocol import Endpoint, EndReason, open_endpoint, refuse_open_door
+from laglab_station import run_station
 
 ENDPOINT_HELP = "udpin://HOST:PORT, udpout://HOST:PORT, serial:///dev/ttyX:BAUD or pty://PATH."
 

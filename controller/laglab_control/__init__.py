@@ -1,0 +1,58 @@
+"""The mathematics, on numpy alone: model, estimators, laws, prediction over the delays."""
+
+from laglab_control.angle import wrap
+from laglab_control.controller import Control, Controller, StationConfig
+from laglab_control.errata import Erratum, PrintedController
+from laglab_control.errors import ConfigError, ControlError, StampError
+from laglab_control.estimators import (
+    ESTIMATORS,
+    Applied,
+    DelayedEkf,
+    Ekf,
+    Estimator,
+    Measured,
+    Popf,
+    PopfExact,
+    ReplayedInputs,
+    Rewinding,
+    RigidMotions,
+    State,
+)
+from laglab_control.flight import Echo
+from laglab_control.laws import Drive, Law
+from laglab_control.model import Model, NonlinearModel
+from laglab_control.replay import Replay, constant_delay, replay
+from laglab_control.robot import RobotModel
+
+__all__ = [
+    "ESTIMATORS",
+    "Applied",
+    "ConfigError",
+    "Control",
+    "ControlError",
+    "Controller",
+    "DelayedEkf",
+    "Drive",
+    "Echo",
+    "Ekf",
+    "Erratum",
+    "Estimator",
+    "Law",
+    "Measured",
+    "Model",
+    "NonlinearModel",
+    "Popf",
+    "PopfExact",
+    "PrintedController",
+    "Replay",
+    "ReplayedInputs",
+    "Rewinding",
+    "RigidMotions",
+    "RobotModel",
+    "StampError",
+    "State",
+    "StationConfig",
+    "constant_delay",
+    "replay",
+    "wrap",
+]

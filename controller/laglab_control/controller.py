@@ -1,0 +1,127 @@
+"""Estimate, extrapolate, command: the remote station's part of a tick, without messages."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from laglab_control.errors import ConfigError
+from laglab_control.estimators.family import Kind, estimator_kind
+from laglab_control.estimators.interface import Estimator, Measured, State
+from laglab_control.flight import Echo, Flight, hear, send, take_off
+from laglab_control.laws.aicardi import STAND_STILL, Drive, Law, as_input
+from laglab_control.model import Vector, constant
+from laglab_control.motion import Way, joined
+from laglab_control.robot import RobotModel
+
+DIVERGED = 1000.0
+"""[m] from the origin: no estimate of a robot that a run is about is ever there."""
+
+
+@dataclass(frozen=True, eq=False)
+class StationConfig:
+    """What the station is told. Poses [m, m, rad], delays in ticks.
+
+    `estimator` is one of ESTIMATORS. Raises ConfigError, naming the field, when one is not right.
+    """
+
+    estimator: str = "popf"
+    model: RobotModel = field(default_factory=RobotModel)
+    law: Law = field(default_factory=Law)
+    initial_estimate: ArrayLike = (0.0, 0.0, 0.0)
+    initial_covariance: ArrayLike = field(default_factory=lambda: np.eye(3) * 1e-4)
+    command_delay: int = 0
+    """n, until the stamps tell: n is estimated from the command that each measurement echoes, and
+    the delay m of a measurement is read from its own stamp."""
+
+    def __post_init__(self) -> None:
+        estimator_kind(self.estimator)
+        for name, shape in (("initial_estimate", (3,)), ("initial_covariance", (3, 3))):
+            object.__setattr__(self, name, constant(getattr(self, name), shape, name))
+        if self.command_delay < 0:
+            raise ConfigError(f"command_delay must be 0 ticks or more, not {self.command_delay}")
+
+
+class Control(NamedTuple):
+    """The controller's knowledge at a tick; immutable."""
+
+    estimate: State
+    flight: Flight
+    drive: Drive
+    """The last command."""
+
+
+@dataclass(frozen=True, eq=False)
+class Controller:
+    """Step 3 of a tick, as pure functions.
+
+    At tick 0 `answer(start(), ...)`; at every later tick `answer(advance(control), ...)`.
+    """
+
+    config: StationConfig
+
+    @cached_property
+    def kind(self) -> Kind:
+        """What the estimator is."""
+        return estimator_kind(self.config.estimator)
+
+    @cached_property
+    def _estimator(self) -> Estimator[Any]:
+        return self.kind.make(self.config.model)
+
+    def start(self) -> Control:
+        """Tick 0, before its correction."""
+        config = self.config
+        x, P = np.array(config.initial_estimate), np.array(config.initial_covariance)
+        flight = take_off(config.model, config.command_delay)
+        return Control(self._estimator.start(x, P), flight, STAND_STILL)
+
+    def advance(self, control: Control) -> Control:
+        """One tick later: the last command is on its way, the one n ticks older was applied."""
+        estimate, flight, drive = control
+        flight, applied = send(self.config.model, flight, as_input(drive))
+        estimate = self._estimator.predict(estimate, self._applied(applied, drive))
+        return Control(estimate, flight, drive)
+
+    def expect(self, control: Control, s: int) -> Control:
+        """The same, prepared for a measurement sampled at tick s, which is likely to come."""
+        estimate, flight, drive = control
+        return Control(self._estimator.expect(estimate, s), flight, drive)
+
+    def answer(
+        self, control: Control, measurements: Sequence[Measured], echoes: Sequence[Echo] = ()
+    ) -> Control:
+        """The tick's correction and command, from all that arrived.
+
+        The robot is to stand still when there is no estimate to drive it by, or it has diverged.
+        """
+        estimate, flight, drive = control
+        flight, inputs = hear(self.config.model, flight, echoes)
+        estimate = self._estimator.correct(estimate, measurements, inputs)
+        if estimate.x is None or diverged(estimate.x):
+            return Control(estimate, flight, STAND_STILL)
+        pose = self._at_arrival(estimate.x, flight, drive)
+        return Control(estimate, flight, self.config.law.drive(pose, drive.at_goal))
+
+    def warning(self, control: Control) -> str | None:
+        """The estimator's."""
+        return self._estimator.warning(control.estimate)
+
+    def _applied(self, u: Vector, drive: Drive) -> Vector:
+        """The input that the estimator is told."""
+        return u
+
+    def _at_arrival(self, x: Vector, flight: Flight, drive: Drive) -> Way:
+        """(29): where the robot will be when the command that is now made comes into force."""
+        pose = Way(*x.tolist())
+        return joined(pose, flight.ahead) if self.kind.predicts else pose
+
+
+def diverged(x: Vector) -> bool:
+    """Whether a pose estimate is not finite, or further than DIVERGED from the origin."""
+    x_, y, theta = x.tolist()
+    return not (math.isfinite(theta) and math.hypot(x_, y) <= DIVERGED)

@@ -1,0 +1,29 @@
+"""Estimators: pure functions over immutable states, each line under the paper's equation."""
+
+from laglab_control.estimators.delayed_ekf import DelayedEkf
+from laglab_control.estimators.ekf import Ekf
+from laglab_control.estimators.family import ESTIMATORS, Kind, estimator_kind
+from laglab_control.estimators.interface import Applied, Estimator, Measured, State
+from laglab_control.estimators.kalman import Innovation
+from laglab_control.estimators.popf import Popf
+from laglab_control.estimators.popf_exact import PopfExact
+from laglab_control.estimators.rewinding import Rewinding
+from laglab_control.estimators.windows import ReplayedInputs, RigidMotions
+
+__all__ = [
+    "ESTIMATORS",
+    "Applied",
+    "DelayedEkf",
+    "Ekf",
+    "Estimator",
+    "Innovation",
+    "Kind",
+    "Measured",
+    "Popf",
+    "PopfExact",
+    "ReplayedInputs",
+    "Rewinding",
+    "RigidMotions",
+    "State",
+    "estimator_kind",
+]

@@ -1,0 +1,60 @@
+"""The estimators by name, for the robot."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+from laglab_control.errors import ConfigError
+from laglab_control.estimators.delayed_ekf import DelayedEkf
+from laglab_control.estimators.ekf import Ekf
+from laglab_control.estimators.interface import Estimator
+from laglab_control.estimators.popf import Popf
+from laglab_control.estimators.popf_exact import PopfExact
+from laglab_control.estimators.raw import Raw
+from laglab_control.estimators.rewinding import Rewinding
+from laglab_control.estimators.windows import RigidMotions
+from laglab_control.robot import RobotModel
+
+
+class Kind(NamedTuple):
+    """What an estimator is, and how to make it for a robot."""
+
+    description: str
+    make: Callable[[RobotModel], Estimator[Any]]
+    predicts: bool = True
+    """Whether it gives an estimate of the present, which can be extrapolated and reported."""
+
+
+ESTIMATORS: Mapping[str, Kind] = {
+    "raw": Kind(
+        "no filter and no prediction: the newest measurement",
+        lambda _: Raw(),
+        predicts=False,
+    ),
+    "ekf": Kind(
+        "the plain EKF, which takes a late measurement for a fresh one",
+        lambda model: Rewinding(Ekf(model)),
+    ),
+    "popf": Kind(
+        "the paper's filter",
+        lambda model: Rewinding(Popf(model)),
+    ),
+    "popf-printed": Kind(
+        "the paper's filter with the innovation as (28) prints it",
+        lambda model: Rewinding(Popf(model, innovation_at_k=True)),
+    ),
+    "popf-exact": Kind(
+        "the structure of popf with the true cross-covariances",
+        lambda model: Rewinding(PopfExact(model)),
+    ),
+    "delayed-ekf": Kind(
+        "the optimum: an EKF at the measurement's tick, carried forward over the known inputs",
+        lambda model: DelayedEkf(model, RigidMotions(model)),
+    ),
+}
+
+
+def estimator_kind(name: str) -> Kind:
+    """The estimator of that name. Raises ConfigError, listing the names, when there is none."""
+    if name not in ESTIMATORS:
+        raise ConfigError(f"no estimator {name!r}: take one of {', '.join(ESTIMATORS)}")
+    return ESTIMATORS[name]

@@ -1,0 +1,100 @@
+"""The one interface of all estimators."""
+
+from collections.abc import Sequence
+from typing import NamedTuple, Protocol, TypeVar
+
+from laglab_control.errors import StampError
+from laglab_control.estimators.kalman import Innovation
+from laglab_control.model import Matrix, Vector
+
+
+class Applied(NamedTuple):
+    """The input u (p,) was in force on [t_tick, t_{tick+1})."""
+
+    tick: int
+    u: Vector
+
+
+class Measured(NamedTuple):
+    """The measurement z_s (q,) was sampled at s = `tick`, however late it arrives."""
+
+    tick: int
+    z: Vector
+
+
+def by_sampling(measurements: Sequence[Measured], k: int) -> Sequence[Measured]:
+    """Oldest first. Raises StampError unless all were sampled at ticks 0 ... k."""
+    if len(measurements) > 1:
+        measurements = sorted(measurements, key=_tick)
+    if measurements and not (measurements[0].tick >= 0 and measurements[-1].tick <= k):
+        stamps = ", ".join(str(s) for s, _ in measurements)
+        raise StampError(f"sampled at tick {stamps}, at tick {k}: give ticks from 0 to {k}")
+    return measurements
+
+
+def _tick(measured: Measured) -> int:
+    return measured.tick
+
+
+class State(Protocol):
+    """All that an estimator knows at a tick; immutable."""
+
+    @property
+    def tick(self) -> int:
+        """k."""
+        ...
+
+    @property
+    def x(self) -> Vector | None:
+        """The estimate of x_k (d,); None while there is none (only `raw`)."""
+        ...
+
+    @property
+    def P(self) -> Matrix | None:
+        """Its claimed covariance (d, d); None for `raw`, which claims none."""
+        ...
+
+
+S = TypeVar("S", bound=State)
+
+
+class Estimator(Protocol[S]):
+    """Pure functions over an immutable state: predict once a tick, then correct.
+
+    At tick 0: `correct(start(x, P), ...)`. At tick k >= 1: `correct(predict(state, u), ...)` with
+    u the input in force on [t_{k-1}, t_k). The delay of a measurement is read from its stamp.
+    """
+
+    def start(self, x: Vector, P: Matrix) -> S:
+        """The state at tick 0, whose prior is x (d,) with covariance P (d, d)."""
+        ...
+
+    def predict(self, state: S, u: Vector) -> S:
+        """One tick further, with the input u (p,) known or believed to be applied meanwhile."""
+        ...
+
+    def correct(
+        self, state: S, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
+    ) -> S:
+        """With all that arrived at this tick: none, one or many, in any order, perhaps repeated.
+
+        `inputs` tells of earlier ticks at which another input was in force than predict was given.
+        Of two measurements sampled at the same tick, the second is a repeat and is not used.
+        Raises StampError for one sampled before tick 0 or after `state.tick`.
+        """
+        ...
+
+    def expect(self, state: S, s: int) -> S:
+        """The same, prepared for a measurement sampled at `s`: its correction will take less time.
+
+        Any other may come as well. Nothing can be prepared by those that say nothing else.
+        """
+        return state
+
+    def innovation(self, state: S) -> Innovation | None:
+        """Of the newest measurement used at this tick, as the estimator saw it; None without."""
+        ...
+
+    def warning(self, state: S) -> str | None:
+        """What nobody who relies on this estimate must overlook; None while there is nothing."""
+        return None

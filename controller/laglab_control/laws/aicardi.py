@@ -1,0 +1,74 @@
+"""The control law (2), (4) of Aicardi, with limits and a goal tolerance."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from laglab_control.angle import wrap
+from laglab_control.model import Vector
+
+
+class Drive(NamedTuple):
+    """What the law answers: v [m/s], omega [rad/s], and whether it holds the robot at the goal."""
+
+    v: float
+    omega: float
+    at_goal: bool
+
+
+STAND_STILL = Drive(0.0, 0.0, at_goal=False)
+
+
+@dataclass(frozen=True)
+class Law:
+    """Drives a pose [m, m, rad] to `goal`.
+
+    `v_max` [m/s] and `omega_max` [rad/s] clamp the answer; `goal_tolerance` [m] is the distance
+    inside which the robot only turns. None switches each of them off, as in the paper.
+    """
+
+    goal: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    lambda_: float = 6.0
+    h: float = 1.0
+    gamma: float = 3.0
+    v_max: float | None = None
+    omega_max: float | None = None
+    goal_tolerance: float | None = None
+
+    def drive(self, pose: Iterable[float], at_goal: bool) -> Drive:
+        """The command at a finite `pose` (3,). `at_goal` is the last answer's, False at first."""
+        x, y, theta = pose
+        x_goal, y_goal, theta_goal = self.goal
+        rho = math.hypot(x_goal - x, y_goal - y)
+        if self._holds(rho, at_goal):
+            v, omega, at_goal = 0.0, self.lambda_ / 2 * wrap(theta_goal - theta), True
+        else:
+            psi = math.atan2(y_goal - y, x_goal - x)
+            v, omega = self._polar(rho, alpha=wrap(psi - theta), phi=wrap(psi - theta_goal))
+            at_goal = False
+        return Drive(_clamp(v, self.v_max), _clamp(omega, self.omega_max), at_goal)
+
+    def _holds(self, rho: float, at_goal: bool) -> bool:
+        """Entered below the tolerance, left only above twice the tolerance."""
+        if self.goal_tolerance is None:
+            return False
+        return rho <= 2 * self.goal_tolerance if at_goal else rho < self.goal_tolerance
+
+    def _polar(self, rho: float, alpha: float, phi: float) -> tuple[float, float]:
+        """(4), the same as (2)."""
+        v = self.gamma * math.cos(alpha) * rho
+        sinc = math.sin(alpha) / alpha if alpha else 1.0
+        omega = self.lambda_ * alpha + self.gamma * math.cos(alpha) * sinc * (alpha + self.h * phi)
+        return v, omega
+
+
+def _clamp(value: float, limit: float | None) -> float:
+    return value if limit is None else min(max(value, -limit), limit)
+
+
+def as_input(drive: Drive) -> Vector:
+    """The command as the model's input u = [v, omega]."""
+    return np.array((drive.v, drive.omega))

@@ -1,0 +1,87 @@
+"""The robot of section 2 as a model for the filters."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from laglab_control.angle import direction, wrap
+from laglab_control.model import Matrix, Vector, constant, identity
+from laglab_control.motion import Motion, Way, moved
+
+
+@dataclass(frozen=True, eq=False)
+class RobotModel:
+    """The differential-drive robot: x = [x, y, theta] [m, m, rad], u = [v, omega] [m/s, rad/s].
+
+    `Q` (2, 2) is the covariance of the wheel speeds' noise [w_L, w_R] [(rad/s)^2], `R` (3, 3) that
+    of the measurement [m^2, m^2, rad^2]. The defaults are the paper's (30). theta is not wrapped.
+    """
+
+    sample_time: float = 0.01
+    wheel_radius: float = 0.05
+    track: float = 0.6
+    Q: Matrix = field(default_factory=lambda: np.diag([0.01, 0.01]))
+    R: Matrix = field(default_factory=lambda: np.diag([0.01, 0.01, 0.018]))
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "Q", constant(self.Q, (2, 2), "Q"))
+        object.__setattr__(self, "R", constant(self.R, (3, 3), "R"))
+
+    def f(self, x: Vector, u: Vector) -> Vector:
+        """(3)."""
+        x_, y, theta = x.tolist()
+        v, omega = u.tolist()
+        Ts, (cosine, sine) = self.sample_time, direction(theta)
+        return np.array((x_ + Ts * v * cosine, y + Ts * v * sine, theta + Ts * omega))
+
+    def A(self, x: Vector, u: Vector) -> Matrix:
+        """(31)."""
+        distance, (cosine, sine) = self.sample_time * float(u[0]), direction(float(x[2]))
+        dx, dy = distance * cosine, distance * sine
+        return np.array((1.0, 0.0, -dy, 0.0, 1.0, dx, 0.0, 0.0, 1.0)).reshape(3, 3)
+
+    def W(self, x: Vector) -> Matrix:
+        """(32) with the sign of the third row corrected; columns w_L, w_R."""
+        cosine, sine = direction(float(x[2]))
+        turn = 2 / self.track
+        scale = self.sample_time * self.wheel_radius / 2
+        return scale * np.array(((cosine, cosine), (sine, sine), (-turn, turn)))
+
+    def motion(self, u: Vector) -> Motion:
+        """One tick of (3): g_k = (Ts v, 0, Ts omega), with W Q W^T as seen from the robot."""
+        v, omega = u.tolist()
+        return Motion(self.sample_time * v, 0.0, self.sample_time * omega, *self._noise)
+
+    def way(self, u: Vector) -> Way:
+        """Where one tick of (3) leads."""
+        v, omega = u.tolist()
+        return Way(self.sample_time * v, 0.0, self.sample_time * omega)
+
+    def predict(self, x: Vector, P: Matrix, u: Vector) -> tuple[Vector, Matrix]:
+        """(27), all in one: A P A^T + W Q W^T is how the covariance of a motion composes."""
+        return moved(x, P, self.motion(u))
+
+    def h(self, x: Vector) -> Vector:
+        """The pose itself, whose Jacobian is (33)."""
+        return x
+
+    def H(self, x: Vector) -> Matrix:
+        """(33)."""
+        return identity(3)
+
+    def measurement_noise(self, x: Vector) -> Matrix:
+        """R, for V = I in (33)."""
+        return self.R
+
+    def innovation(self, z: Vector, expected: Vector) -> Vector:
+        """z - expected with the heading wrapped."""
+        difference = z - expected
+        difference[2] = wrap(float(difference[2]))
+        return difference
+
+    @cached_property
+    def _noise(self) -> tuple[float, ...]:
+        """The upper triangle of W Q W^T (32) at theta = 0: elsewhere it only turns."""
+        W = self.W(np.zeros(3))
+        return tuple((W @ self.Q @ W.T)[np.triu_indices(3)].tolist())

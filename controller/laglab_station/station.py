@@ -1,0 +1,257 @@
+"""The station's side of the link without I/O: the robot's bytes in, the answer's bytes out."""
+
+from array import array
+from collections import deque
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from laglab_control.controller import Control, Controller, StationConfig, diverged
+from laglab_control.estimators.interface import State
+from laglab_control.flight import MEMORY
+from laglab_protocol import (
+    STATION_COMPONENT,
+    STATION_HEARTBEAT,
+    STATION_SYSTEM,
+    UNANNOUNCED,
+    Codec,
+    Command,
+    End,
+    EndReason,
+    Estimate,
+    Frame,
+    Measurement,
+    Message,
+    Tick,
+    Timesync,
+)
+from laglab_station.hearing import echoes, measured
+from laglab_station.joining import Rest, observe, prior
+from laglab_station.report import StationReport, tick_times
+
+LONGEST_GAP = MEMORY
+"""Ticks without a word, after which nobody knows what the robot did meanwhile."""
+
+
+class Station:
+    """Answers each tick of the robot once with ESTIMATE (unless `raw`) and COMMAND.
+
+    A repeated tick gets the same answer and changes nothing. A tick whose measurements did not all
+    arrive gets none: the robot will repeat it. Everything else that arrives is passed over, and so
+    is every other sender once a robot was heard. A robot first heard at tick 0 starts where the
+    station was told; one that is already under way, or was not heard for LONGEST_GAP ticks, is
+    taken over from a standstill (`joining`), and the tick at which its pose is known is tick 0 of
+    section 3.
+    """
+
+    def __init__(
+        self,
+        config: StationConfig,
+        controller: Callable[[StationConfig], Controller] = Controller,
+        clock: Callable[[], int] | None = None,
+        codec: Codec | None = None,
+    ) -> None:
+        """`clock` [ns] times the ticks and answers TIMESYNC; without one neither is done."""
+        codec = codec or Codec(STATION_SYSTEM, STATION_COMPONENT)
+        self._config = config
+        self._make_controller = controller
+        self._clock = clock
+        self._controller = controller(config)
+        self._joining: Rest | None = None
+        self._sender, self._receiver = codec.sender, codec.receiver
+        self._robot: tuple[int, int] | None = None
+        self._measurements: deque[Measurement] = deque(maxlen=UNANNOUNCED)
+        self._first = 0
+        self._control = self._controller.start()
+        self._ahead: Control | None = None
+        """What the next tick starts from, if there was time to predict it already."""
+        self._answer: list[Message] = []
+        self._tick: int | None = None
+        self._outcome: End | None = None
+        self._closed = False
+        self._measurement_delay: int | None = None
+        self._times = array("q")
+        self._warning: str | None = None
+        self._unjudged = False
+        """Whether measurements came at this tick, and nobody has looked for warnings since."""
+
+    @property
+    def outcome(self) -> End | None:
+        """What ended the run: None while it lasts."""
+        return self._outcome
+
+    @property
+    def closed(self) -> bool:
+        """Whether both sides have said END."""
+        return self._closed
+
+    @property
+    def tick(self) -> int | None:
+        """The last tick that was answered; None before the first."""
+        return self._tick
+
+    @property
+    def warning(self) -> str | None:
+        """What the station has to warn of; None while there is nothing."""
+        self._judge()
+        return self._warning
+
+    def report(self) -> StationReport:
+        """How the run went so far."""
+        return StationReport(
+            self._control.flight.command_delay,
+            self._measurement_delay,
+            tick_times(self._times),
+            warnings=(self.warning,) if self.warning else (),
+        )
+
+    def heartbeat(self) -> bytes:
+        """The frame that makes the station known to the robot."""
+        return self._sender.frame(STATION_HEARTBEAT)
+
+    def receive(self, data: bytes, datagram: bool) -> bytes:
+        """What to send back for `data`, perhaps nothing; `datagram` says that it is a whole one."""
+        frames = self._receiver.receive(data)
+        if datagram:
+            frames += self._receiver.end_datagram()
+        return b"".join([self._hear(frame) for frame in frames])
+
+    def look_ahead(self) -> None:
+        """Do now, while the robot is busy with the answer, what the next one would wait for."""
+        regular = self._unjudged  # a measurement came, so at the next tick one may too
+        self._judge()
+        under_way = self._tick is not None and self._joining is None and self._outcome is None
+        if under_way and self._ahead is None:
+            self._ahead = self._controller.advance(self._control)
+            if regular and self._measurement_delay is not None:
+                due = self._ahead.flight.tick - self._measurement_delay
+                self._ahead = self._controller.expect(self._ahead, due)
+
+    def end(self, reason: EndReason) -> bytes:
+        """End the run from this side: the frame to send."""
+        self._outcome = End(self._tick or 0, reason)
+        return self._sender.frame(self._outcome)
+
+    def _hear(self, frame: Frame) -> bytes:
+        sender = (frame.system, frame.component)
+        if self._robot not in (None, sender):
+            return b""
+        match frame.message:
+            case Measurement():
+                self._measurements.append(frame.message)
+            case Tick():
+                self._robot = sender
+                return self._hear_tick(frame.message)
+            case End() if self._robot:
+                return self._hear_end(frame.message)
+            case Timesync(tc1=0, ts1=asked) if self._clock:
+                return self._sender.frame(Timesync(self._clock(), asked))
+        return b""
+
+    def _hear_end(self, end: End) -> bytes:
+        """Answered once with the same; it may itself be the answer to ours."""
+        answered, self._closed = self._outcome is not None, True
+        if answered:
+            return b""
+        self._outcome = end
+        return self._sender.frame(end)
+
+    def _hear_tick(self, message: Tick) -> bytes:
+        measurements = list(self._measurements)
+        self._measurements.clear()
+        if len(measurements) != message.measurements:
+            return b""
+        unknown = self._tick is None or message.tick - self._tick > LONGEST_GAP
+        if unknown and self._outcome is None:
+            self._meet(message.tick)
+        if message.tick == self._tick:
+            return self._framed()
+        if self._outcome is None and (self._tick is None or message.tick > self._tick):
+            self._advance_timed(message.tick, measurements)
+            return self._framed()
+        return b""
+
+    def _meet(self, tick: int) -> None:
+        """A robot that is new to us at this tick."""
+        self._judge()
+        self._first, self._tick = tick, None
+        self._control, self._ahead = self._controller.start(), None
+        self._joining = Rest() if tick > 0 and self._controller.kind.predicts else None
+
+    def _advance_timed(self, tick: int, measurements: list[Measurement]) -> None:
+        started = self._clock() if self._clock else 0
+        with np.errstate(over="ignore", invalid="ignore"):  # what follows is seen as diverged
+            self._advance(tick, measurements)
+        if self._clock:
+            self._times.append(self._clock() - started)
+
+    def _advance(self, tick: int, measurements: list[Measurement]) -> None:
+        if self._joining is None:
+            self._step(tick, measurements)
+            return
+        for measurement in measurements:
+            self._joining = observe(self._joining, measurement, self._config.model)
+        if self._joining.known:
+            self._take_over(self._joining)
+            self._step(tick, [])
+        else:
+            self._tick = tick
+            self._answer = [Command(0.0, 0.0, tick, *self._peer, estimates=0)]
+
+    def _take_over(self, rest: Rest) -> None:
+        """From the pose at which the robot stands, with nothing but standstill in flight."""
+        x, P = prior(rest, self._config.model)
+        config = replace(self._config, initial_estimate=x, initial_covariance=P)
+        self._controller = self._make_controller(config)
+        self._control = self._controller.start()
+        self._first = self._tick = rest.tick
+        self._joining = None
+
+    @property
+    def _peer(self) -> tuple[int, int]:
+        assert self._robot is not None, "nobody was heard yet"
+        return self._robot
+
+    def _framed(self) -> bytes:
+        return b"".join([self._sender.frame(message) for message in self._answer])
+
+    def _step(self, tick: int, measurements: list[Measurement]) -> None:
+        """On to `tick`; over ticks that were lost on the way the robot held the last command."""
+        self._judge()
+        control = self._control
+        for _ in range(0 if self._tick is None else tick - self._tick):
+            control = self._ahead or self._controller.advance(control)
+            self._ahead = None
+        arrived = measured(measurements, self._first, tick)
+        if arrived:
+            self._measurement_delay = tick - self._first - arrived[-1].tick
+        told = echoes(measurements, self._first, tick)
+        self._control = self._controller.answer(control, arrived, told)
+        self._tick = tick
+        self._answer = self._messages(tick, self._control)
+        self._unjudged = bool(arrived)
+
+    def _judge(self) -> None:
+        if self._unjudged and self._warning is None:
+            said = self._controller.warning(self._control)
+            self._warning = f"tick {self._tick}: {said}" if said else None
+        self._unjudged = False
+
+    def _messages(self, tick: int, control: Control) -> list[Message]:
+        estimates = _estimate(tick, control.estimate)
+        v, omega, _ = control.drive
+        command = Command(v, omega, tick, *self._peer, estimates=len(estimates))
+        if control.estimate.x is not None and diverged(control.estimate.x):
+            self._outcome = End(tick, EndReason.DIVERGED)
+            return [*estimates, self._outcome, command]  # the command closes the answer
+        return [*estimates, command]
+
+
+def _estimate(tick: int, state: State) -> list[Estimate]:
+    """The report of the estimate; none when the estimator claims no covariance."""
+    if state.x is None or state.P is None:
+        return []
+    (xx, xy, xt), (_, yy, yt), (_, _, tt) = state.P.tolist()
+    x, y, theta = state.x.tolist()
+    return [Estimate(x, y, theta, xx, xy, xt, yy, yt, tt, tick)]

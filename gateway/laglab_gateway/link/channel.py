@@ -1,0 +1,98 @@
+"""One direction of the link: a fixed delay in ticks, and what the link does besides."""
+
+import heapq
+import math
+from typing import Generic, NamedTuple, TypeVar
+
+from laglab_gateway.link.fates import Fates, Kind
+from laglab_gateway.link.log import LinkRow
+from laglab_gateway.link.timeline import Direction
+from laglab_protocol import Message, Receiver, Sender
+
+M = TypeVar("M", bound=Message)
+
+ROUNDING = 1e-9
+"""A frame due this little [ticks] after a tick is due at it: times are sums of doubles."""
+
+
+class Crossing(NamedTuple, Generic[M]):
+    """What comes out of a channel: the message, and the tick at which it went in."""
+
+    message: M
+    entered: int
+
+
+class Channel(Generic[M]):
+    """Holds each message back for exactly `delay` ticks; an impaired one for longer, or for ever.
+
+    Everything happens on the grid of ticks: what would come out between two of them comes out at
+    the later one. `fates` None is the ideal link.
+    """
+
+    def __init__(
+        self, direction: Direction, delay: int, sample_time: float, fates: Fates | None = None
+    ) -> None:
+        if delay < 0:
+            raise ValueError(f"a delay is a number of ticks, 0 or more, not {delay}")
+        self._log: list[LinkRow] = []
+        self._direction = direction
+        self._delay = delay
+        self._sample_time = sample_time
+        self._fates = fates
+        self._sender = Sender(0, 0)
+        self._entered = 0
+        self._frame = (-1, 0)
+        self._waiting: list[tuple[int, int, Crossing[M]]] = []
+
+    def push(self, tick: int, message: M) -> None:
+        """Put in `message` at `tick`; ticks never go back."""
+        if self._fates is None:
+            self._hold(tick, message, 0)
+        else:
+            self._impair(tick, message, self._fates)
+
+    def due(self, tick: int) -> list[Crossing[M]]:
+        """Take out all that has waited long enough: by its time, then in the order of entering."""
+        due = []
+        while self._waiting and self._waiting[0][0] <= tick:
+            due.append(heapq.heappop(self._waiting)[2])
+        return due
+
+    def take_log(self) -> list[LinkRow]:
+        """What was done to every frame since the last call."""
+        log, self._log = self._log, []
+        return log
+
+    def _hold(self, tick: int, message: M, extra_ticks: int) -> None:
+        self._entered += 1
+        due = tick + self._delay + extra_ticks
+        heapq.heappush(self._waiting, (due, self._entered, Crossing(message, tick)))
+
+    def _impair(self, tick: int, message: M, fates: Fates) -> None:
+        number = self._number(tick)
+        raw = self._sender.frame(message)
+        for copy, fate in enumerate(fates.of(tick, tick * self._sample_time, raw)):
+            row = LinkRow(self._direction, tick, number, copy, len(raw), fate.kind, fate.extra)
+            self._log.append(row)
+            received = _received(fate.kind, message, fate.raw)
+            if received is not None:
+                extra = math.ceil(fate.extra / self._sample_time - ROUNDING)
+                self._hold(tick, received, extra)
+
+    def _number(self, tick: int) -> int:
+        last, number = self._frame
+        self._frame = (tick, number + 1 if tick == last else 0)
+        return self._frame[1]
+
+
+def _received(kind: Kind, sent: M, raw: bytes) -> M | None:
+    """A corrupted frame goes through a receiver: one in 65,536 gets past its CRC."""
+    if kind is Kind.DELIVERED:
+        return sent
+    if kind is not Kind.CORRUPTED:
+        return None
+    receiver = Receiver()
+    for frame in receiver.receive(raw) + receiver.end_datagram():
+        if isinstance(frame.message, type(sent)):
+            return frame.message
+    return None

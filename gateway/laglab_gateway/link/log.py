@@ -1,0 +1,64 @@
+"""`link.csv`: what was done to every frame, and how to have it done again."""
+
+import csv
+from collections import defaultdict
+from collections.abc import Iterable
+from pathlib import Path
+from typing import NamedTuple
+
+from laglab_gateway.errors import TimelineError
+from laglab_gateway.link.fates import Fate, Kind
+from laglab_gateway.link.timeline import Direction
+
+
+class LinkRow(NamedTuple):
+    """One copy of one frame: the tick it entered at, its number in that tick, what became of it."""
+
+    direction: str
+    tick: int
+    frame: int
+    copy: int
+    size: int
+    fate: str
+    extra: float
+
+
+LINK_HEADER = ",".join(LinkRow._fields) + "\n"
+
+
+class RecordedFates:
+    """The fates of another run, frame by frame; frames that it did not have are delivered."""
+
+    def __init__(self, rows: Iterable[LinkRow]) -> None:
+        self._fates: dict[tuple[int, int], list[tuple[Kind, float]]] = defaultdict(list)
+        for row in rows:
+            self._fates[row.tick, row.frame].append((Kind(row.fate), row.extra))
+        self._tick, self._frame = -1, 0
+
+    def of(self, tick: int, time: float, raw: bytes) -> list[Fate]:  # noqa: ARG002 the tick tells
+        """As recorded for the frame of the same number in the same tick."""
+        self._frame = self._frame + 1 if tick == self._tick else 0
+        self._tick = tick
+        recorded = self._fates.get((tick, self._frame), [(Kind.DELIVERED, 0.0)])
+        return [
+            Fate(kind, extra, raw if kind is Kind.DELIVERED else b"") for kind, extra in recorded
+        ]
+
+
+def read_link_log(path: Path, direction: Direction) -> list[LinkRow]:
+    """The rows of one direction. Raises TimelineError when the file is no link log."""
+    try:
+        with path.open(newline="") as file:
+            header, *rows = csv.reader(file)
+            read = [_row(*cells) for cells in rows]
+    except (OSError, ValueError, TypeError) as error:
+        raise TimelineError(f"{path} is not a readable link log: {error}") from error
+    if header != list(LinkRow._fields):
+        raise TimelineError(f"{path} is not a link log: expected the columns {LINK_HEADER.strip()}")
+    return [row for row in read if row.direction == direction]
+
+
+def _row(
+    direction: str, tick: str, frame: str, copy: str, size: str, fate: str, extra: str
+) -> LinkRow:
+    return LinkRow(direction, int(tick), int(frame), int(copy), int(size), Kind(fate), float(extra))

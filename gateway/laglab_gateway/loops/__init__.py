@@ -1,0 +1,1 @@
+"""The rim: who paces the ticks, and over which endpoints."""

@@ -1,0 +1,41 @@
+"""The conformance kit: does whatever answers at this address speak our protocol?"""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Literal
+
+from laglab_conformance import controller, freerunning, lockstep
+from laglab_conformance.items import carry_out
+from laglab_conformance.report import Report, Result, Verdict
+from laglab_conformance.session import Patience
+from laglab_protocol.endpoints import open_endpoint
+
+__all__ = ["Pace", "Patience", "Report", "Result", "Verdict", "conform"]
+
+Side = Literal["robot", "controller"]
+Pace = Literal["lockstep", "realtime"]
+
+
+def conform(
+    url: str,
+    side: Side,
+    key_file: Path | None = None,
+    patience: Patience | None = None,
+    pace: Pace = "lockstep",
+    progress: Callable[[str], None] = lambda _: None,
+) -> Report:
+    """Test the robot, or the controller, that answers at `url`; its run is over afterwards.
+
+    A robot is told to stand still throughout; `pace` says whether it waits for each command or has
+    a clock of its own; `progress` is told what is tried. Raises the EndpointError and KeyFileError
+    trees.
+    """
+    with open_endpoint(url) as endpoint:
+        talk = endpoint, patience or Patience(), key_file
+        if side == "controller":
+            results = carry_out(controller.ITEMS, controller.ControllerSession(*talk), progress)
+        elif pace == "lockstep":
+            results = carry_out(lockstep.ITEMS, lockstep.LockstepSession(*talk), progress)
+        else:
+            results = carry_out(freerunning.ITEMS, freerunning.FreeRunningSession(*talk), progress)
+    return Report(side, results)

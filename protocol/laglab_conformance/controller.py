@@ -1,0 +1,168 @@
+"""The items of a controller: we are its robot, and stand at the origin."""
+
+import math
+
+from laglab_conformance.framing import RECEIVING, SENDING, SIGNING
+from laglab_conformance.items import SOON, Item, reacts_soon, refused
+from laglab_conformance.session import NoReactionError, Session
+from laglab_protocol.framing.frame import Frame
+from laglab_protocol.messages.base import Message
+from laglab_protocol.messages.loop import (
+    NO_COMMAND,
+    ROBOT_COMPONENT,
+    ROBOT_SYSTEM,
+    STATION_COMPONENT,
+    STATION_SYSTEM,
+    Command,
+    End,
+    EndReason,
+    Estimate,
+    Measurement,
+    Tick,
+)
+from laglab_protocol.messages.standard import Heartbeat
+
+
+class ControllerSession(Session):
+    """Its robot. The stimulus is the next tick, the reaction the command for it."""
+
+    system, component = ROBOT_SYSTEM, ROBOT_COMPONENT
+    peer = (STATION_SYSTEM, STATION_COMPONENT)
+    tick = 0
+
+    def connect(self) -> None:
+        if self.listen(self.patience.appear, lambda frame: isinstance(frame.message, Heartbeat)):
+            return
+        raise NoReactionError("no HEARTBEAT came")
+
+    def stimulus(self) -> Message:
+        return Tick(self.tick, 0)
+
+    def is_reaction(self, frame: Frame) -> bool:
+        return isinstance(frame.message, Command) and frame.message.tick == self.tick
+
+    def go_on(self) -> None:
+        self.tick += 1
+
+    def answer_to(self, *messages: Message) -> list[Estimate | Command]:
+        """What came back, up to the command, for these in one datagram. Raises NoReactionError."""
+        before = len(self.heard)
+        self.send(*messages)
+        if self.listen(self.patience.react, lambda frame: isinstance(frame.message, Command)):
+            came = [frame.message for frame in self.heard[before:]]
+            return [message for message in came if isinstance(message, Estimate | Command)]
+        raise NoReactionError(f"no answer to {messages[-1]}")
+
+
+def _sample(tick: int) -> Measurement:
+    return Measurement(0.0, 0.0, 0.0, 0.0, 0.0, tick, NO_COMMAND)
+
+
+def _calls(session: ControllerSession) -> str | None:
+    session.connect()
+    session.exchange()
+    return None
+
+
+def _answers_whole(session: ControllerSession) -> str | None:
+    """At most one estimate, then the command that tells of it, all stamped with the tick."""
+    for _ in range(5):
+        tick = session.tick
+        *estimates, command = session.answer_to(_sample(tick), Tick(tick, 1))
+        session.go_on()
+        assert isinstance(command, Command)
+        if command.tick != tick or any(each.tick != tick for each in estimates):
+            return f"tick {tick} is answered with other stamps: {command}"
+        if command.estimates != len(estimates):
+            return f"the command tells of {command.estimates} estimates, {len(estimates)} came"
+    return None
+
+
+def _aims(session: ControllerSession) -> str | None:
+    for frame in session.heard:
+        if isinstance(frame.message, Command) and _target(frame.message) != (1, 1):
+            return f"a command is meant for {_target(frame.message)}, the robot is (1, 1)"
+    return None
+
+
+def _target(command: Command) -> tuple[int, int]:
+    return command.target_system, command.target_component
+
+
+def _finite(session: ControllerSession) -> str | None:
+    for frame in session.heard:
+        if isinstance(frame.message, Command) and not all(map(math.isfinite, frame.message.speeds)):
+            return f"{frame.message}"
+    return None
+
+
+def _answers_again(session: ControllerSession) -> str | None:
+    """Twice the same tick, with its measurement: the same answer."""
+    tick, batch = session.tick, (_sample(session.tick), Tick(session.tick, 1))
+    first = session.answer_to(*batch)
+    again = session.answer_to(*batch)
+    session.go_on()
+    return None if again == first else f"tick {tick} is answered with {first}, then with {again}"
+
+
+def _answers_once(session: ControllerSession) -> str | None:
+    tick = session.tick
+    session.exchange()
+    session.quiet()
+    answers = [
+        frame.message
+        for frame in session.heard
+        if isinstance(frame.message, Command) and frame.message.tick == tick
+    ]
+    return None if len(answers) == 1 else f"tick {tick} is answered {len(answers)} times"
+
+
+def _missing(session: Session, _: object) -> bytes:
+    """A tick that tells of a measurement that did not arrive."""
+    assert isinstance(session, ControllerSession)
+    return session.forged(Tick(session.tick, 1)).raw
+
+
+def _backwards(session: ControllerSession) -> str | None:
+    """A tick from before the last one."""
+    session.exchange()
+    session.exchange()
+    old = session.tick - 2
+    session.send(Tick(old, 0))
+    found = session.listen(
+        session.refusal,
+        lambda frame: isinstance(frame.message, Command) and frame.message.tick == old,
+    )
+    if found:
+        return f"tick {old} is answered, though tick {old + 1} was"
+    session.exchange()
+    return None
+
+
+def _ends(session: ControllerSession) -> str | None:
+    """It answers END once with the same."""
+    end, before = End(session.tick - 1, EndReason.COMPLETED), len(session.heard)
+    session.send(end)
+    session.listen(session.patience.react, lambda frame: isinstance(frame.message, End))
+    session.quiet()
+    answers = [each.message for each in session.heard[before:] if isinstance(each.message, End)]
+    if len(answers) != 1:
+        return f"answered {len(answers)} times"
+    return None if answers[0] == end else f"{end} is answered with {answers[0]}"
+
+
+ITEMS: list[Item[ControllerSession]] = [
+    Item("lock-step", "it calls until the robot is heard", _calls),
+    *RECEIVING,
+    Item("lock-step", "an answer is whole and stamped", _answers_whole),
+    Item("lock-step", "a repeated tick gets the same answer", _answers_again),
+    Item("lock-step", "a tick is answered once", _answers_once),
+    Item("lock-step", "a tick whose measurement is missing gets no answer", refused(_missing)),
+    Item("lock-step", "time does not go back", _backwards),
+    Item("lock-step", "commands are meant for the robot", _aims),
+    Item("lock-step", "commands are finite", _finite),
+    Item("timing", f"it answers within {SOON} s", reacts_soon),
+    *SIGNING,
+    *SENDING,
+    Item("lock-step", "it answers END once", _ends),
+]

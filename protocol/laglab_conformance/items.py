@@ -1,0 +1,108 @@
+"""Items, and how they are carried out one after another."""
+
+import statistics
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+from laglab_conformance.forge import Forged
+from laglab_conformance.report import Result, Verdict
+from laglab_conformance.session import DoesNotApplyError, NoReactionError, Session
+
+SOON = 0.25
+"""[s] Within this time a peer in lock-step reacts."""
+
+AnySession = TypeVar("AnySession", bound=Session, contravariant=True)
+
+
+@dataclass(frozen=True)
+class Item(Generic[AnySession]):
+    """`check` returns what is wrong, None when nothing is."""
+
+    group: str
+    name: str
+    check: Callable[[AnySession], str | None]
+    mandatory: bool = True
+
+
+def carry_out(
+    items: Iterable[Item[AnySession]], session: AnySession, progress: Callable[[str], None]
+) -> tuple[Result, ...]:
+    """Every item in its turn; one that fails does not keep the others from being tried.
+
+    Only without the first, that the peer is there at all, is there nothing to try them on.
+    `progress` is told what is tried.
+    """
+
+    def tried(item: Item[AnySession]) -> Result:
+        progress(f"{item.group}: {item.name}")
+        return _result(item, session)
+
+    first, *others = items
+    found = tried(first)
+    if found.verdict is Verdict.FAILED:
+        return found, *(_not_tried(item) for item in others)
+    return found, *map(tried, others)
+
+
+def _not_tried(item: Item[AnySession]) -> Result:
+    reason = "not tried: the peer was not found"
+    return Result(item.group, item.name, item.mandatory, Verdict.SKIPPED, reason, 0.0)
+
+
+def _result(item: Item[AnySession], session: AnySession) -> Result:
+    started, ended = time.monotonic(), session.ended
+    verdict, reason = Verdict.PASSED, ""
+    try:
+        wrong = item.check(session)
+        if wrong is not None:
+            verdict, reason = Verdict.FAILED, wrong
+    except NoReactionError as error:
+        verdict, reason = Verdict.FAILED, str(error)
+    except DoesNotApplyError as error:
+        verdict, reason = Verdict.SKIPPED, str(error)
+    if verdict is Verdict.FAILED and ended:
+        reason += f" (its run had ended at tick {ended.tick}: let it run longer)"
+    seconds = time.monotonic() - started
+    return Result(item.group, item.name, item.mandatory, verdict, reason, seconds)
+
+
+def reacts_soon(session: Session) -> str | None:
+    """Nine ordinary exchanges: as a median, each must be over within `SOON`."""
+    times = []
+    for _ in range(9):
+        started = time.monotonic()
+        session.exchange()
+        times.append(time.monotonic() - started)
+    median = statistics.median(times)
+    return f"median {median:.3f} s" if median > SOON else None
+
+
+Mangle = Callable[[Session, Forged], bytes]
+
+
+def accepted(mangle: Mangle) -> Callable[[Session], str | None]:
+    """The stimulus in this form must be taken; if it was not, the ordinary one comes after it."""
+
+    def check(session: Session) -> str | None:
+        session.endpoint.send(mangle(session, session.forged()))
+        if session.reacts(session.patience.react):
+            return None
+        session.exchange()
+        return "it was not taken"
+
+    return check
+
+
+def refused(mangle: Mangle) -> Callable[[Session], str | None]:
+    """The stimulus in this form must not be taken, and the ordinary one after it must."""
+
+    def check(session: Session) -> str | None:
+        session.endpoint.send(mangle(session, session.forged()))
+        if session.reacts(session.refusal):
+            return "it was taken"
+        session.exchange()
+        return None
+
+    return check

@@ -1,0 +1,112 @@
+"""The items of a robot in lock-step: each of its ticks waits for the command stamped with it."""
+
+from itertools import pairwise
+
+from laglab_conformance.framing import RECEIVING, SENDING, SIGNING
+from laglab_conformance.items import SOON, Item, reacts_soon, refused
+from laglab_conformance.robot import (
+    BEGINS,
+    ENDS,
+    NOT_FINITE,
+    NOT_MEANT,
+    STAMPED,
+    Batch,
+    RobotSession,
+    batches,
+    is_after,
+    is_tick,
+    measurements,
+    ticks,
+)
+from laglab_conformance.services import SERVICES
+from laglab_conformance.session import Session
+from laglab_protocol.framing.frame import Frame
+from laglab_protocol.messages.loop import Command, Tick
+
+
+class LockstepSession(RobotSession):
+    """Its station. The reaction to the command for its tick is its next tick."""
+
+    def is_reaction(self, frame: Frame) -> bool:
+        return is_after(self.tick, frame)
+
+
+def _repeats(session: LockstepSession) -> str | None:
+    """Two more of the same, while nobody answers; each whole."""
+    for _ in range(2):
+        frame = session.listen(session.patience.react, is_tick)
+        if frame is None:
+            return f"tick {session.tick} is not repeated"
+        assert isinstance(frame.message, Tick)
+        if frame.message.tick != session.tick:
+            return (
+                f"tick {frame.message.tick} came, though nobody answered {session.tick}; "
+                "has it a clock of its own (--pace realtime)?"
+            )
+    return None
+
+
+def _repeats_the_same(session: LockstepSession) -> str | None:
+    said: dict[int, tuple[Batch, Tick]] = {}
+    for batch, last in batches(session):
+        if said.setdefault(last.tick, (batch, last)) != (batch, last):
+            return f"tick {last.tick} is repeated with other messages"
+    return None
+
+
+def _one_by_one(session: LockstepSession) -> str | None:
+    for _ in range(5):
+        session.exchange()
+    for before, after in pairwise(ticks(session)):
+        if after.tick - before.tick not in (0, 1):
+            return f"tick {after.tick} follows tick {before.tick}"
+    return None
+
+
+def _in_order(session: LockstepSession) -> str | None:
+    for before, after in pairwise(measurements(session)):
+        if after.command_tick < before.command_tick:
+            return f"command {after.command_tick} is in force after {before.command_tick}"
+    return None
+
+
+def _incomplete(session: LockstepSession) -> str | None:
+    session.send(session.command(session.tick, estimates=1))
+    if session.reacts(session.refusal):
+        return "a command was taken without the estimate that it tells of"
+    session.exchange()
+    return None
+
+
+def _at(session: Session, offset: int) -> Command:
+    assert isinstance(session, LockstepSession)
+    return session.command(max(session.tick + offset, 0))
+
+
+ITEMS: list[Item[LockstepSession]] = [
+    BEGINS,
+    Item("lock-step", "an unanswered tick is repeated", _repeats),
+    *RECEIVING,
+    Item("lock-step", "it goes from tick to tick", _one_by_one),
+    Item(
+        "lock-step",
+        "a command for a later tick is no answer",
+        refused(lambda session, _: session.forged(_at(session, +1)).raw),
+    ),
+    Item(
+        "lock-step",
+        "a command for an earlier tick is no answer",
+        refused(lambda session, _: session.forged(_at(session, -1)).raw),
+    ),
+    Item("lock-step", "an answer waits for its estimate", _incomplete),
+    NOT_MEANT,
+    NOT_FINITE,
+    Item("timing", f"it goes on within {SOON} s", reacts_soon),
+    *SERVICES,
+    *SIGNING,
+    Item("lock-step", "a repeat brings the same messages", _repeats_the_same),
+    *STAMPED,
+    Item("lock-step", "a later measurement tells of no earlier command", _in_order),
+    *SENDING,
+    ENDS,
+]

@@ -1,0 +1,166 @@
+"""What the kit does with any robot: we are its station, and no item makes it move."""
+
+import time
+
+from msgspec.structs import replace
+
+from laglab_conformance.forge import Forged
+from laglab_conformance.items import Item, refused
+from laglab_conformance.session import NoReactionError, Session
+from laglab_protocol.framing.frame import Frame
+from laglab_protocol.messages.base import Message
+from laglab_protocol.messages.loop import (
+    NO_COMMAND,
+    ROBOT_COMPONENT,
+    ROBOT_SYSTEM,
+    STATION_COMPONENT,
+    STATION_SYSTEM,
+    Command,
+    End,
+    EndReason,
+    Measurement,
+    Tick,
+)
+from laglab_protocol.messages.standard import STATION_HEARTBEAT, CommandAck, CommandLong
+
+Batch = list[Measurement]
+
+ANOTHER = 7
+"""The system of a robot that is not under test."""
+
+
+class RobotSession(Session):
+    """Its station. The stimulus is the command for its tick."""
+
+    system, component = STATION_SYSTEM, STATION_COMPONENT
+    peer = (ROBOT_SYSTEM, ROBOT_COMPONENT)
+    tick = 0
+
+    def connect(self) -> None:
+        deadline = time.monotonic() + self.patience.appear
+        while time.monotonic() < deadline:
+            self.send(STATION_HEARTBEAT)
+            if frame := self.listen(self.patience.refuse, is_tick):
+                assert isinstance(frame.message, Tick)
+                self.tick = frame.message.tick
+                return
+        raise NoReactionError("no LAGLAB_TICK, though a station sent heartbeats")
+
+    def stimulus(self) -> Message:
+        return self.command(self.tick)
+
+    def command(self, tick: int, v: float = 0.0, estimates: int = 0) -> Command:
+        """Stand still."""
+        return Command(v, 0.0, tick, *self.peer, estimates)
+
+    def go_on(self) -> None:
+        self.tick = max(each.tick for each in ticks(self))
+
+    def ask(self, question: Message, answer: type[Message]) -> Frame:
+        """The first answer of this kind. Raises NoReactionError."""
+        self.send(question)
+        found = self.listen(self.patience.react, lambda frame: isinstance(frame.message, answer))
+        if found is None:
+            raise NoReactionError(f"no {answer.__name__} after {type(question).__name__}")
+        return found
+
+    def order(self, number: int, first: float = 0.0) -> CommandAck:
+        """A command (MAV_CMD) and its acknowledgement."""
+        long = CommandLong(first, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, number, *self.peer, 0)
+        ack = self.ask(long, CommandAck).message
+        assert isinstance(ack, CommandAck)
+        if ack.command != number:
+            raise NoReactionError(f"command {number} acknowledged as {ack.command}")
+        return ack
+
+
+def is_tick(frame: Frame) -> bool:
+    return isinstance(frame.message, Tick)
+
+
+def is_after(tick: int, frame: Frame) -> bool:
+    return isinstance(frame.message, Tick) and frame.message.tick > tick
+
+
+def ticks(session: RobotSession) -> list[Tick]:
+    return [frame.message for frame in session.heard if isinstance(frame.message, Tick)]
+
+
+def measurements(session: RobotSession) -> list[Measurement]:
+    """All that came, by the ticks at which they were sampled."""
+    found = [frame.message for frame in session.heard if isinstance(frame.message, Measurement)]
+    return sorted(found, key=lambda measurement: measurement.tick)
+
+
+def batches(session: RobotSession) -> list[tuple[Batch, Tick]]:
+    """Every tick but the first, which we may have heard in part, with its measurements."""
+    whole, waiting = [], Batch()
+    for frame in session.heard:
+        if isinstance(frame.message, Measurement):
+            waiting.append(frame.message)
+        elif isinstance(frame.message, Tick):
+            whole.append((waiting, frame.message))
+            waiting = Batch()
+    return whole[1:]
+
+
+def _begins(session: RobotSession) -> str | None:
+    session.connect()
+    return None
+
+
+def _not_finite(session: RobotSession) -> str | None:
+    """Taken or not, it must never be in force, and the robot must go on."""
+    session.send(session.command(session.tick, v=float("nan")))
+    if not session.reacts(session.refusal):
+        session.exchange()
+    return None
+
+
+def _counts(session: RobotSession) -> str | None:
+    for batch, last in batches(session):
+        if len(batch) != last.measurements:
+            return f"{last} came after {len(batch)} measurements"
+    return None
+
+
+def _echoes(session: RobotSession) -> str | None:
+    """Each measurement names an earlier command; none moves, but by a command before ours."""
+    first = ticks(session)[0].tick
+    for each in measurements(session):
+        if not NO_COMMAND <= each.command_tick < max(each.tick, 0):
+            return f"the measurement of tick {each.tick} names command {each.command_tick}"
+        others = NO_COMMAND < each.command_tick < first
+        if each.speeds != (0.0, 0.0) and not others:
+            return f"the measurement of tick {each.tick} moves, though nobody commanded it"
+    return None
+
+
+def _ends(session: RobotSession) -> str | None:
+    """It answers END with the same reason."""
+    end = End(session.tick, EndReason.INTERRUPTED)
+    session.send(end)
+    answer = session.listen(session.patience.react, lambda frame: isinstance(frame.message, End))
+    if answer is None:
+        return "END is not answered"
+    assert isinstance(answer.message, End)
+    if answer.message.reason != end.reason:
+        return f"END with reason {end.reason} is answered with {answer.message.reason}"
+    session.quiet()
+    return "it goes on after END" if session.listen(session.refusal, is_tick) else None
+
+
+def _for_another(session: Session, _: Forged) -> bytes:
+    assert isinstance(session, RobotSession)
+    other = replace(session.command(session.tick), target_system=ANOTHER)
+    return session.forged(other).raw
+
+
+BEGINS = Item("ticks", "it begins when a station is heard", _begins)
+NOT_FINITE = Item("ticks", "it survives a command that is not finite", _not_finite)
+NOT_MEANT = Item("ticks", "a command for another robot is not followed", refused(_for_another))
+STAMPED = [
+    Item("ticks", "the tick counts its measurements", _counts),
+    Item("ticks", "measurements tell the command in force", _echoes),
+]
+ENDS = Item("ticks", "it answers END", _ends)

@@ -1,0 +1,134 @@
+"""A talk with the peer under test: provoke it, see whether it reacts."""
+
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+from laglab_conformance.forge import Forged
+from laglab_protocol.endpoints import Endpoint
+from laglab_protocol.endpoints.silence import Silence
+from laglab_protocol.framing.frame import Frame
+from laglab_protocol.framing.receiver import Receiver
+from laglab_protocol.messages.base import Message
+from laglab_protocol.messages.loop import End
+from laglab_protocol.signing.keys import read_key
+from laglab_protocol.signing.signature import Signer, Verifier
+
+
+class Patience(NamedTuple):
+    """Seconds: for the peer to appear, for a reaction that is due, for one that must not come
+    (longer where reactions take longer)."""
+
+    appear: float = 10.0
+    react: float = 2.0
+    refuse: float = 0.4
+
+
+class NoReactionError(Exception):
+    """The peer did not do what it must; the text says what."""
+
+
+class DoesNotApplyError(Exception):
+    """The item cannot be tested here; the text says why."""
+
+
+class Session(ABC):
+    """One side's counterpart. `heard` is all that came."""
+
+    system: int
+    component: int
+    peer: tuple[int, int]
+
+    def __init__(self, endpoint: Endpoint, patience: Patience, key_file: Path | None) -> None:
+        self.endpoint = endpoint
+        self.patience = patience
+        self.key = read_key(key_file) if key_file else None
+        self.signer = Signer(self.key, (0, self.system, self.component)) if self.key else None
+        self.receiver = Receiver(Verifier(self.key) if self.key else None)
+        self.heard: list[Frame] = []
+        self.noise_before = 0
+        """Bytes in no frame before the first frame: we may have come in the middle of one."""
+        self._sequence = 0
+        self._slowest = 0.0
+        self._silence = Silence(endpoint.datagrams)
+
+    @property
+    def refusal(self) -> float:
+        """After so many seconds no reaction will come any more: twice as long as any has taken."""
+        return max(self.patience.refuse, 2.0 * self._slowest)
+
+    @property
+    def ended(self) -> End | None:
+        """The peer's word that its run is over."""
+        ends = (each.message for each in self.heard if isinstance(each.message, End))
+        return next(ends, None)
+
+    @abstractmethod
+    def connect(self) -> None:
+        """Find the peer. Raises NoReactionError."""
+
+    @abstractmethod
+    def stimulus(self) -> Message:
+        """The message that the peer must react to now."""
+
+    @abstractmethod
+    def is_reaction(self, frame: Frame) -> bool:
+        """Whether this frame is the reaction to the stimulus."""
+
+    @abstractmethod
+    def go_on(self) -> None:
+        """After a reaction: the next stimulus is another one."""
+
+    def forged(self, message: Message | None = None) -> Forged:
+        """The usual frame of a message, by default the stimulus, with the next number."""
+        message = self.stimulus() if message is None else message
+        made = Forged.of(message, self.system, self.component, self._sequence, self.signer)
+        self._sequence = (self._sequence + 1) & 0xFF
+        return made
+
+    def send(self, *messages: Message) -> None:
+        """Send messages in one datagram, as they should be."""
+        self.endpoint.send(b"".join(self.forged(message).raw for message in messages))
+
+    def listen(self, seconds: float, until: Callable[[Frame], bool]) -> Frame | None:
+        """The first frame for which `until` holds, None when none came in time."""
+        deadline = time.monotonic() + seconds
+        while (left := deadline - time.monotonic()) > 0:
+            batch = self._receive(left)
+            for frame in batch:
+                if until(frame):
+                    return frame
+        return None
+
+    def _receive(self, seconds: float) -> list[Frame]:
+        data = self.endpoint.receive(seconds)
+        frames = self.receiver.receive(data)
+        if self._silence.after(data):
+            frames += self.receiver.end_datagram()
+        if frames:
+            self.endpoint.accept_peer()
+            if not self.heard:
+                self.noise_before = self.receiver.counters.noise
+            self.heard += frames
+        return frames
+
+    def reacts(self, seconds: float) -> bool:
+        """Whether the reaction comes; if so the next stimulus is another one."""
+        began = time.monotonic()
+        if self.listen(seconds, self.is_reaction) is None:
+            return False
+        self._slowest = max(self._slowest, time.monotonic() - began)
+        self.go_on()
+        return True
+
+    def exchange(self) -> None:
+        """An ordinary stimulus and its reaction. Raises NoReactionError."""
+        self.endpoint.send(self.forged().raw)
+        if not self.reacts(self.patience.react):
+            raise NoReactionError(f"no reaction to {self.stimulus()}")
+
+    def quiet(self) -> None:
+        """Take in what is still under way."""
+        self.listen(self.refusal, lambda _: False)

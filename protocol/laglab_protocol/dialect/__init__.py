@@ -1,0 +1,1 @@
+"""The dialect: its XML, the code generated from it, and what looks after both."""

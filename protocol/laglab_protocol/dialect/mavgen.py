@@ -1,0 +1,97 @@
+"""The dialect file, and what mavgen makes of it."""
+
+import contextlib
+import io
+import shutil
+import tempfile
+from argparse import Namespace
+from pathlib import Path
+
+from laglab_protocol.errors import DialectError
+
+LANGUAGES = ("C", "C++11", "CS", "Java", "Python3", "Swift", "WLua")
+GENERATED = Path(__file__).parent / "generated" / "laglab.py"
+
+
+def dialect_path() -> Path:
+    """The dialect's XML: beside this package in a clone, inside it when installed."""
+    package = Path(__file__).parents[1]
+    candidates = (package.parent / "laglab.xml", package / "laglab.xml")
+    return next(path for path in candidates if path.is_file())
+
+
+def carried_dialects() -> Path:
+    """The folder of the dialects that pymavlink carries: common.xml and others."""
+    import pymavlink.dialects.v20 as dialects
+
+    return Path(dialects.__path__[0])
+
+
+def offer_to_pymavlink() -> None:
+    """Let pymavlink's tools of this process find the dialect by name, as `--dialect laglab`.
+
+    They want MAVLINK20=1 in the environment before they are imported.
+    """
+    import pymavlink.dialects.v20 as dialects
+
+    dialects.__path__.append(str(GENERATED.parent))
+
+
+def generate(xml: Path, language: str, output: Path) -> None:
+    """Run mavgen (MAVLink 2) on `xml`, which may include the dialects that pymavlink carries.
+
+    `language` is one of mavgen's names: C, Python3, WLua, … `output` is a folder for C and a file
+    for Python3 and WLua. mavgen evaluates enum values, so `xml` must be the caller's own.
+    Raises DialectError with mavgen's words when it refuses.
+    """
+    from pymavlink.generator import mavgen
+
+    options = Namespace(
+        language=language,
+        wire_protocol="2.0",
+        output=str(output),
+        validate=True,
+        strict_units=False,
+        error_limit=200,
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        source = _beside_its_includes(xml, Path(folder))
+        said = io.StringIO()
+        try:
+            with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+                done = mavgen.mavgen(options, [str(source)])
+        except (SystemExit, Exception) as error:
+            raise DialectError(f"{xml}: mavgen fails: {error}\n{said.getvalue()}") from error
+    if done is False:
+        raise DialectError(f"{xml}: mavgen refuses it:\n{said.getvalue()}")
+    if language == "WLua":
+        _mend_dissector(output)
+
+
+def generate_into(language: str, directory: Path, xml: Path | None = None) -> Path:
+    """Our dialect, or another, in one of LANGUAGES for those who write firmware: where it is.
+
+    WLua is the dissector for Wireshark: `wireshark -X lua_script:laglab.lua`. Raises DialectError.
+    """
+    if language not in LANGUAGES:
+        raise DialectError(f"no language {language!r}: take one of {', '.join(LANGUAGES)}")
+    xml = xml or dialect_path()
+    if not xml.is_file():
+        raise DialectError(f"cannot read {xml}: no such file")
+    directory.mkdir(parents=True, exist_ok=True)
+    suffix = {"Python3": ".py", "WLua": ".lua"}.get(language)
+    output = directory / f"{xml.stem}{suffix}" if suffix else directory
+    generate(xml, language, output)
+    return output
+
+
+def _mend_dissector(output: Path) -> None:
+    """mavgen calls a method that Wireshark lacks; its le_float reads eight bytes too."""
+    output.write_text(output.read_text().replace(":le_double()", ":le_float()"))
+
+
+def _beside_its_includes(xml: Path, folder: Path) -> Path:
+    """Copy `xml` into `folder` with the dialects it may include: mavgen looks for them there."""
+    for carried in carried_dialects().glob("*.xml"):
+        shutil.copy(carried, folder)
+    return Path(shutil.copy(xml, folder / xml.name))

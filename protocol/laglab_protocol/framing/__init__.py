@@ -1,0 +1,1 @@
+"""Frames: messages to bytes and back."""

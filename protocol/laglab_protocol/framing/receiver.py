@@ -1,0 +1,127 @@
+"""Bytes in, verified frames out.
+
+Whatever is no intact frame is counted and passed over: no bytes raise, and none that are not
+verified change anything but those counts. After a false start the search resumes one byte later,
+so every intact frame is found, whatever stands around it; a datagram is a unit, so what is cut
+off at its end does not swallow the next one.
+"""
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+from laglab_protocol.framing.frame import START, Frame, Refusal, decode
+from laglab_protocol.signing.signature import Verifier
+
+Peer = tuple[int, int]
+"""(system, component)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Counters:
+    """What a receiver has seen so far."""
+
+    frames: int = 0
+    """Frames delivered."""
+    noise: int = 0
+    """Bytes that belong to no delivered frame."""
+    refused: dict[Refusal, int] = field(default_factory=dict)
+    """Start bytes from which no frame came, by reason (start bytes in noise are among them)."""
+    lost: dict[Peer, int] = field(default_factory=dict)
+    """Gaps in the sequence numbers. A frame up to 128 behind is late or repeated: not a gap."""
+    late: dict[Peer, int] = field(default_factory=dict)
+    """Frames that came after their successors, or twice."""
+
+
+class Receiver:
+    """Finds the frames in a stream, or in one datagram after another. No I/O.
+
+    With a verifier only what it lets pass is delivered; without one, only what is not signed.
+    """
+
+    def __init__(self, verifier: Verifier | None = None) -> None:
+        self._verifier = verifier
+        self._rest = b""
+        self._frames = 0
+        self._noise = 0
+        self._refused: Counter[Refusal] = Counter()
+        self._expected: dict[int, int] = {}  # by system << 8 | component
+        self._lost: Counter[int] = Counter()
+        self._late: Counter[int] = Counter()
+
+    @property
+    def counters(self) -> Counters:
+        """A snapshot; later bytes do not change it."""
+        return Counters(
+            self._frames,
+            self._noise,
+            dict(self._refused),
+            _by_peer(self._lost),
+            _by_peer(self._late),
+        )
+
+    def receive(self, data: bytes) -> list[Frame]:
+        """The frames that `data`, after the bytes received before, completes.
+
+        At most one unfinished frame is kept: under 300 bytes.
+        """
+        buffer = self._rest + data if self._rest else data
+        self._rest = b""
+        verifier, expected = self._verifier, self._expected
+        signed_too = verifier is not None
+        frames: list[Frame] = []
+        position, size = 0, len(buffer)
+        while position < size:
+            found = decode(buffer, position, signed_too) if buffer[position] == START else None
+            if verifier and type(found) is Frame:
+                found = verifier.refuses(found) or found
+            if type(found) is Frame:
+                peer = found.system << 8 | found.component
+                sequence = found.sequence
+                if expected.get(peer) == sequence:
+                    expected[peer] = (sequence + 1) & 0xFF
+                else:
+                    self._out_of_sequence(peer, sequence)
+                frames.append(found)
+                position += len(found.raw)
+            elif found is Refusal.INCOMPLETE:
+                self._rest = buffer[position:]
+                break
+            else:
+                position = self._pass_over(found, buffer, position)
+        self._frames += len(frames)
+        return frames
+
+    def end_datagram(self) -> list[Frame]:
+        """Give up on an unfinished frame: it was none. Returns those found after its start byte.
+
+        To be called after each datagram; on a stream, after a silence longer than a frame takes.
+        """
+        frames: list[Frame] = []
+        while self._rest:
+            self._refused[Refusal.INCOMPLETE] += 1
+            self._noise += 1
+            after_start, self._rest = self._rest[1:], b""
+            frames += self.receive(after_start)
+        return frames
+
+    def _pass_over(self, refusal: Refusal | None, buffer: bytes, position: int) -> int:
+        """The position of the next start byte: at least one byte on, however long the frame."""
+        if refusal:
+            self._refused[refusal] += 1
+        following = buffer.find(START, position + 1)
+        after = following if following >= 0 else len(buffer)
+        self._noise += after - position
+        return after
+
+    def _out_of_sequence(self, peer: int, sequence: int) -> None:
+        gap = (sequence - self._expected.get(peer, sequence)) & 0xFF
+        if gap >= 128:
+            self._late[peer] += 1
+            return
+        if gap:
+            self._lost[peer] += gap
+        self._expected[peer] = (sequence + 1) & 0xFF
+
+
+def _by_peer(counts: Counter[int]) -> dict[Peer, int]:
+    return {(key >> 8, key & 0xFF): count for key, count in counts.items()}

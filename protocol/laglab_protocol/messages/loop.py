@@ -1,0 +1,134 @@
+"""The messages that this project handles, named as in the XML.
+
+They are written out, so that a type checker knows their fields; every other message of the dialect
+is had by `message_type("NAME")`.
+"""
+
+from enum import IntEnum
+
+from msgspec import defstruct
+
+from laglab_protocol.dialect.generated import laglab as dialect
+from laglab_protocol.errors import DialectError
+from laglab_protocol.messages.base import Message
+from laglab_protocol.messages.standard import STANDARD
+
+NO_COMMAND = -1
+"""Measurement.command_tick when no command had come into force."""
+
+UNANNOUNCED = 256
+"""More frames than LAGLAB_TICK or LAGLAB_COMMAND can announce: so many are never asked for."""
+
+ROBOT_SYSTEM, ROBOT_COMPONENT = 1, 1
+STATION_SYSTEM, STATION_COMPONENT = 200, 190
+
+
+class EndReason(IntEnum):
+    """Why a run ended (LAGLAB_END_REASON)."""
+
+    COMPLETED = 0
+    DIVERGED = 1
+    INTERRUPTED = 2
+    FAILED = 3
+
+
+class Tick(Message, frozen=True):
+    """Robot: tick k has begun; so many measurements precede this message in its datagram."""
+
+    tick: int
+    measurements: int
+
+
+class Measurement(Message, frozen=True):
+    """Robot: the pose measured at `tick` [m, m, rad], the command then in force [m/s, rad/s]."""
+
+    x: float
+    y: float
+    theta: float
+    v: float
+    omega: float
+    tick: int
+    command_tick: int
+
+    @property
+    def pose(self) -> tuple[float, float, float]:
+        """x, y [m] and θ [rad], as measured."""
+        return self.x, self.y, self.theta
+
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """v [m/s] and ω [rad/s], as commanded."""
+        return self.v, self.omega
+
+
+class Command(Message, frozen=True):
+    """Station: the command for `tick` [m/s, rad/s]; so many estimates precede it."""
+
+    v: float
+    omega: float
+    tick: int
+    target_system: int
+    target_component: int
+    estimates: int
+
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """v [m/s] and ω [rad/s]."""
+        return self.v, self.omega
+
+
+class Estimate(Message, frozen=True):
+    """Station: the estimate at `tick` after its correction [m, m, rad], and its covariance."""
+
+    x: float
+    y: float
+    theta: float
+    p_xx: float
+    p_xy: float
+    p_xt: float
+    p_yy: float
+    p_yt: float
+    p_tt: float
+    tick: int
+
+    @property
+    def pose(self) -> tuple[float, float, float]:
+        """x, y [m] and θ [rad]."""
+        return self.x, self.y, self.theta
+
+
+class End(Message, frozen=True):
+    """Either side: the run ended after `tick` for this reason."""
+
+    tick: int
+    reason: int
+
+
+WRITTEN_OUT: dict[str, type[Message]] = {
+    "LAGLAB_TICK": Tick,
+    "LAGLAB_MEASUREMENT": Measurement,
+    "LAGLAB_COMMAND": Command,
+    "LAGLAB_ESTIMATE": Estimate,
+    "LAGLAB_END": End,
+    **STANDARD,
+}
+
+_IDS: dict[str, int] = {made.msgname: number for number, made in dialect.mavlink_map.items()}
+_types = dict(WRITTEN_OUT)
+
+
+def message_id(name: str) -> int:
+    """The id of the message with this name. Raises DialectError when the dialect has none."""
+    if name not in _IDS:
+        raise DialectError(f"no message {name!r} in the dialect: write it as the XML does")
+    return _IDS[name]
+
+
+def message_type(name: str) -> type[Message]:
+    """The class of any message of the dialect, by its name in the XML."""
+    if name not in _types:
+        generated = dialect.mavlink_map[message_id(name)]
+        made = defstruct(name, generated.ordered_fieldnames, bases=(Message,))
+        assert issubclass(made, Message)
+        _types[name] = made
+    return _types[name]

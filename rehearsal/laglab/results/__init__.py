@@ -1,0 +1,1 @@
+"""What a run leaves, and everything that shows it."""

@@ -1,0 +1,42 @@
+"""The robot FMU as the gateway's plant."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from laglab_gateway import Reading
+
+if TYPE_CHECKING:
+    from laglab_fmu import Robot, RobotParameters
+
+
+class FmuPlant:
+    """The robot FMU, commanded by body speeds instead of wheel speeds."""
+
+    def __init__(self, robot: Robot, parameters: RobotParameters) -> None:
+        self._robot = robot
+        self._parameters = parameters
+        self._wheel_radius = parameters.wheel_radius
+        self._half_track = parameters.track / 2
+        self._reading = Reading(*robot.read())
+
+    def read(self) -> Reading:
+        """The FMU's outputs at this tick."""
+        return self._reading
+
+    def step(self, v: float, omega: float) -> None:
+        """Equation (1) solved for the wheel speeds, then one tick of (3)."""
+        omega_left = (v - omega * self._half_track) / self._wheel_radius
+        omega_right = (v + omega * self._half_track) / self._wheel_radius
+        self._reading = Reading(*self._robot.step(omega_left, omega_right))
+
+    def place(self, x: float, y: float, theta: float) -> None:
+        """Start the FMU again from there; its noise starts again too."""
+        asked, start = (x, y, theta), self._parameters.start
+        x, y, theta = (
+            there if math.isnan(each) else each for each, there in zip(asked, start, strict=True)
+        )
+        self._robot.reset(replace(self._parameters, start=(x, y, theta)))
+        self._reading = Reading(*self._robot.read())

@@ -1,0 +1,185 @@
+"""Whether the covariance that a filter claims is the one its error has, over many seeds.
+
+NEES is e^T P^-1 e of the estimate's error, NIS is v^T S^-1 v of the innovation. Of a consistent
+filter both are chi-square with 3 degrees of freedom, so N times their average over N seeds has 3 N
+of them: Bar-Shalom, Li, Kirubarajan, "Estimation with Applications to Tracking and Navigation",
+section 5.4.
+"""
+
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from multiprocessing import get_context
+from statistics import NormalDist
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from laglab.results.summary import deviation
+from laglab.run.station_side import robot_model
+from laglab.run.trials import run_trial
+from laglab.scenario import Scenario
+from laglab_control import ESTIMATORS, Replay, constant_delay, replay
+from laglab_gateway import Trace
+
+Array = NDArray[np.float64]
+DEGREES = 3
+CONFIDENCE = 0.95
+INSIDE = 0.9
+"""The share of ticks that must be within the bounds. 0.95 is expected, but successive averages of
+NEES hang together, so that the share itself scatters."""
+
+
+class Sample(NamedTuple):
+    """One filter on the record of one seed, at every tick; NaN once it has diverged."""
+
+    error: Array
+    """(N+1, 3)."""
+    variances: Array
+    """(N+1, 3), the diagonal of P."""
+    nees: Array
+    """(N+1,); NaN where P is not positive definite."""
+    nis: Array
+    """(N+1,); NaN where nothing was measured."""
+
+
+class Verdict(NamedTuple):
+    """One filter over all seeds, ticks >= m."""
+
+    estimator: str
+    nees: Array
+    """(N+1,), the average over the seeds at each tick."""
+    nis: Array
+    """(N+1,)."""
+    claimed: Array
+    """(N+1, 3), the standard deviations that P claims, root mean square over the seeds."""
+    true: Array
+    """(N+1, 3), those that the errors have."""
+    indefinite: float
+    """The share of ticks at which P is not positive definite."""
+    diverged: int
+    """Seeds."""
+    bounds: tuple[float, float]
+    """Of the average at one tick, at 95 %."""
+    measurement_delay: int
+
+    def mean(self, values: Array) -> float:
+        """Over the ticks >= m."""
+        return float(np.nanmean(values[self.measurement_delay :]))
+
+    def inside(self, values: Array) -> float:
+        """The share of the ticks >= m at which an average is within the bounds."""
+        low, high = self.bounds
+        settled = values[self.measurement_delay :]
+        settled = settled[~np.isnan(settled)]
+        return float(np.mean((low <= settled) & (settled <= high)))
+
+    @property
+    def consistent(self) -> bool:
+        """The averages of NEES and NIS lie within the bounds, over all and at nearly every tick;
+        P was always a covariance, and no seed diverged."""
+        low, high = self.bounds
+        within = all(
+            low <= self.mean(values) <= high and self.inside(values) >= INSIDE
+            for values in (self.nees, self.nis)
+        )
+        return within and not (self.indefinite or self.diverged)
+
+
+def chi_square_bounds(seeds: int) -> tuple[float, float]:
+    """Between which the average of NEES or NIS over the seeds lies with 95 % probability."""
+    degrees = DEGREES * seeds
+    tail = (1 - CONFIDENCE) / 2
+    low, high = (_chi_square_quantile(p, degrees) / seeds for p in (tail, 1 - tail))
+    return low, high
+
+
+def _chi_square_quantile(probability: float, degrees: int) -> float:
+    """Wilson and Hilferty 1931: the cube root is nearly normal; within 1 % from 30 degrees on."""
+    spread = 2 / (9 * degrees)
+    return float(degrees * (1 - spread + NormalDist().inv_cdf(probability) * np.sqrt(spread)) ** 3)
+
+
+def samples(
+    scenario: Scenario, estimators: Sequence[str], seeds: int, workers: int
+) -> Iterator[dict[str, Sample]]:
+    """Each seed's loop, and every filter on its record; in the order in which they are done."""
+    runs = [
+        scenario.model_copy(
+            update={"seed": scenario.seed + i, "noise": True, "initial_estimate": "drawn"}
+        )
+        for i in range(seeds)
+    ]
+    with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
+        waiting = [pool.submit(sample, run, tuple(estimators)) for run in runs]
+        for done in as_completed(waiting):
+            yield done.result()
+
+
+def sample(scenario: Scenario, estimators: Sequence[str]) -> dict[str, Sample]:
+    """One loop with the scenario's own filter, and every filter on its record."""
+    trace = run_trial(scenario)
+    answer = {}
+    for name in estimators:
+        replayed = _reestimated(scenario, name, trace)
+        error, P = deviation(trace, replayed.estimates), replayed.covariances
+        variances = np.diagonal(P, axis1=1, axis2=2)
+        answer[name] = Sample(error, variances, _nees(error, P), replayed.nis)
+    return answer
+
+
+def _reestimated(scenario: Scenario, name: str, trace: Trace) -> Replay:
+    """What the named estimator makes of a record."""
+    estimator = ESTIMATORS[name].make(robot_model(scenario))
+    inputs = np.stack([trace["v"], trace["omega"]], axis=1)[:-1]
+    measurements = np.stack([trace[f"{axis}_meas"] for axis in ("x", "y", "theta")], axis=1)
+    return replay(
+        estimator,
+        scenario.first_estimate(),
+        scenario.initial_covariance * np.eye(3),
+        inputs,
+        constant_delay(measurements, scenario.measurement_delay),
+    )
+
+
+def _nees(error: Array, P: Array) -> Array:
+    nees = np.full(len(error), np.nan)
+    for k, (e, covariance) in enumerate(zip(error, P, strict=True)):
+        if np.all(np.isfinite(covariance)) and np.linalg.eigvalsh(covariance)[0] > 0:
+            nees[k] = e @ np.linalg.solve(covariance, e)
+    return nees
+
+
+def verdict(name: str, of_seeds: Sequence[Sample], measurement_delay: int) -> Verdict:
+    """All seeds of one filter together; a seed counts up to where it diverged."""
+    length = max(len(one.nees) for one in of_seeds)
+    error, variances, nees, nis = (
+        np.stack([_padded(values, length) for values in column])
+        for column in zip(*of_seeds, strict=True)
+    )
+    settled = slice(measurement_delay, None)
+    alive = ~np.isnan(error[:, settled, 0])
+    return Verdict(
+        name,
+        nees=_mean_over_seeds(nees),
+        nis=_mean_over_seeds(nis),
+        claimed=np.sqrt(np.maximum(_mean_over_seeds(variances), 0)),
+        true=np.sqrt(_mean_over_seeds(error**2)),
+        indefinite=float(np.mean(np.isnan(nees[:, settled])[alive])),
+        diverged=int(np.sum(np.isnan(error[:, -1, 0]))),
+        bounds=chi_square_bounds(len(of_seeds)),
+        measurement_delay=measurement_delay,
+    )
+
+
+def _padded(values: Array, length: int) -> Array:
+    missing = np.full((length - len(values), *values.shape[1:]), np.nan)
+    return np.concatenate((values, missing))
+
+
+def _mean_over_seeds(values: Array) -> Array:
+    """NaN where no seed has a value."""
+    there = ~np.isnan(values)
+    with np.errstate(invalid="ignore", over="ignore"):
+        mean: Array = np.where(there, values, 0).sum(axis=0) / there.sum(axis=0)
+    return mean

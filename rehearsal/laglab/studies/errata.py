@@ -1,0 +1,103 @@
+"""What each misprint of the paper costs: the filter as corrected, as printed, and in between."""
+
+from collections.abc import Iterator
+from functools import partial
+from typing import NamedTuple
+
+from rich.table import Table
+
+from laglab.results.summary import Errors, deviation, has_converged, loop_estimates, rms_error
+from laglab.run.trials import completed, run_trial
+from laglab.scenario import Scenario
+from laglab_control import Erratum, PrintedController
+
+EXACT = 1e-9
+"""Below this, an error is rounding."""
+
+
+class Variant(NamedTuple):
+    """A version of the filter, by the errata that are put back into it."""
+
+    name: str
+    errata: frozenset[Erratum]
+
+
+VARIANTS = (
+    Variant("as corrected", frozenset()),
+    *(
+        Variant(f"({erratum.equation}) {erratum.printed}", frozenset({erratum}))
+        for erratum in Erratum
+    ),
+    Variant("as printed, all of them", frozenset(Erratum)),
+)
+
+
+class Cost(NamedTuple):
+    """How one variant did: without noise, and over some seeds with noise."""
+
+    name: str
+    errors: Errors | None
+    converged: bool
+    noisy_errors: Errors | None
+    """The mean over the runs that did not diverge; None when all did."""
+    diverged: int
+    seeds: int
+
+
+def costs(scenario: Scenario, seeds: int) -> Iterator[Cost]:
+    """Every variant in the loop of the scenario, one after the other."""
+    for variant in VARIANTS:
+        yield _cost(scenario, variant, seeds)
+
+
+def _cost(scenario: Scenario, variant: Variant, seeds: int) -> Cost:
+    errors, converged, _ = _trial(scenario.model_copy(update={"noise": False}), variant)
+    noisy = [
+        _trial(scenario.model_copy(update={"noise": True, "seed": scenario.seed + i}), variant)
+        for i in range(seeds)
+    ]
+    kept = [errors for errors, _, whole in noisy if whole and errors]
+    return Cost(variant.name, errors, converged, _mean(kept), seeds - len(kept), seeds)
+
+
+def _trial(scenario: Scenario, variant: Variant) -> tuple[Errors | None, bool, bool]:
+    """RMS error, whether the robot converged, and whether the estimate did not diverge."""
+    trace = run_trial(scenario, partial(PrintedController, errata=variant.errata))
+    errors = rms_error(deviation(trace, loop_estimates(trace)), scenario.measurement_delay)
+    whole = completed(trace, scenario)
+    return errors, whole and has_converged(trace, scenario), whole
+
+
+def _mean(errors: list[Errors]) -> Errors | None:
+    if not errors:
+        return None
+    return {axis: sum(one[axis] for one in errors) / len(errors) for axis in errors[0]}
+
+
+def costs_table(scenario: Scenario, rows: list[Cost]) -> Table:
+    """One line a variant."""
+    table = Table(
+        box=None,
+        title=f"{scenario.name}: popf, n = {scenario.command_delay}, "
+        f"m = {scenario.measurement_delay}, P_0 = {scenario.initial_covariance:g} I",
+        caption="RMS error of the estimate in x (m), y (m), θ (rad); diverged: runs with noise",
+    )
+    for column in ("as printed in", "without noise", "converges", "with noise", "diverged"):
+        table.add_column(column, no_wrap=True)
+    for row in rows:
+        table.add_row(
+            row.name,
+            _spelled(row.errors),
+            "yes" if row.converged else "no",
+            _spelled(row.noisy_errors),
+            f"{row.diverged}/{row.seeds}",
+        )
+    return table
+
+
+def _spelled(errors: Errors | None) -> str:
+    if errors is None:
+        return "-"
+    if max(errors.values()) < EXACT:
+        return "exact"
+    return ", ".join(f"{value:.2g}" for value in errors.values())
