@@ -20,9 +20,9 @@ def main(path):
         config = StationConfig(
             estimator=name, initial_estimate=first.pose, initial_covariance=np.eye(3) * 1e-3
         )
-        estimates = shadow(config, session)
-        x, y, theta = estimates.estimates[-1]
-        deviations = np.sqrt(np.diag(estimates.covariances[-1]))
+        *_, last = shadow(config, session)
+        x, y, theta = last.x
+        deviations = np.sqrt(np.diag(last.P))
         print(f"{name:12} x {x:+.3f} m, y {y:+.3f} m, theta {theta:+.3f} rad  +- {deviations}")
 
 

@@ -19,7 +19,7 @@ from laglab_control.estimators import (
     State,
 )
 from laglab_control.flight import Echo
-from laglab_control.laws import Drive, Law
+from laglab_control.laws import Demand, Law
 from laglab_control.model import Model, NonlinearModel
 from laglab_control.replay import Replay, constant_delay, replay
 from laglab_control.robot import RobotModel
@@ -32,7 +32,7 @@ __all__ = [
     "ControlError",
     "Controller",
     "DelayedEkf",
-    "Drive",
+    "Demand",
     "Echo",
     "Ekf",
     "Erratum",

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from laglab_control.errors import ConfigError
-from laglab_control.estimators.family import Kind, estimator_kind
+from laglab_control.estimators.family import EstimatorKind, estimator_kind
 from laglab_control.estimators.interface import Estimator, Measured, State
 from laglab_control.flight import Echo, Flight, hear, send, take_off
-from laglab_control.laws.aicardi import STAND_STILL, Drive, Law, as_input
+from laglab_control.laws.aicardi import STAND_STILL, Demand, Law, as_input
 from laglab_control.model import Vector, constant
 from laglab_control.motion import Way, joined
 from laglab_control.robot import RobotModel
@@ -51,7 +51,7 @@ class Control(NamedTuple):
 
     estimate: State
     flight: Flight
-    drive: Drive
+    drive: Demand
     """The last command."""
 
 
@@ -65,7 +65,7 @@ class Controller:
     config: StationConfig
 
     @cached_property
-    def kind(self) -> Kind:
+    def kind(self) -> EstimatorKind:
         """What the estimator is."""
         return estimator_kind(self.config.estimator)
 
@@ -111,11 +111,11 @@ class Controller:
         """The estimator's."""
         return self._estimator.warning(control.estimate)
 
-    def _applied(self, u: Vector, drive: Drive) -> Vector:
+    def _applied(self, u: Vector, drive: Demand) -> Vector:
         """The input that the estimator is told."""
         return u
 
-    def _at_arrival(self, x: Vector, flight: Flight, drive: Drive) -> Way:
+    def _at_arrival(self, x: Vector, flight: Flight, drive: Demand) -> Way:
         """(29): where the robot will be when the command that is now made comes into force."""
         pose = Way(*x.tolist())
         return joined(pose, flight.ahead) if self.kind.predicts else pose

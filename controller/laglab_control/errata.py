@@ -11,7 +11,7 @@ from laglab_control.controller import Controller
 from laglab_control.estimators.interface import Estimator
 from laglab_control.estimators.popf import Popf
 from laglab_control.flight import Flight
-from laglab_control.laws.aicardi import Drive, as_input
+from laglab_control.laws.aicardi import Demand, as_input
 from laglab_control.model import Matrix, Vector, symmetric
 from laglab_control.motion import Way, joined
 from laglab_control.robot import RobotModel
@@ -83,11 +83,11 @@ class PrintedController(Controller):
             covariance_at_k=Erratum.COVARIANCE in self.errata,
         )
 
-    def _applied(self, u: Vector, drive: Drive) -> Vector:
+    def _applied(self, u: Vector, drive: Demand) -> Vector:
         """v_c is the speed last commanded, which comes into force n ticks later."""
         return np.append(u, drive.v)
 
-    def _at_arrival(self, x: Vector, flight: Flight, drive: Drive) -> Way:
+    def _at_arrival(self, x: Vector, flight: Flight, drive: Demand) -> Way:
         """(29), or as printed: u_{k+n-1} is not sent yet, so the last command there is, n times."""
         if Erratum.EXTRAPOLATION not in self.errata:
             return super()._at_arrival(x, flight, drive)

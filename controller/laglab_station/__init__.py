@@ -2,21 +2,22 @@
 
 from laglab_control import StationConfig
 from laglab_station.errors import RobotSilentError, StationError
-from laglab_station.loop import run_station
-from laglab_station.report import StationReport, TickTimes
-from laglab_station.session import Heard, read_session
-from laglab_station.shadow import Shadow, shadow
+from laglab_station.loop import Onlooker, run_station
+from laglab_station.report import StationReport
+from laglab_station.session import SessionTick, heard, read_session
+from laglab_station.shadow import ShadowRow, shadow
 from laglab_station.station import Station
 
 __all__ = [
-    "Heard",
+    "Onlooker",
     "RobotSilentError",
-    "Shadow",
+    "SessionTick",
+    "ShadowRow",
     "Station",
     "StationConfig",
     "StationError",
     "StationReport",
-    "TickTimes",
+    "heard",
     "read_session",
     "run_station",
     "shadow",

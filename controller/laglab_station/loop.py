@@ -1,71 +1,181 @@
 """The station's thin loop: a clock and an endpoint around the core."""
 
-import time
-from collections.abc import Callable
+from collections.abc import Sequence
+from contextlib import suppress
+from time import monotonic, sleep
 
-from laglab_protocol import End, Endpoint, EndReason
+from laglab_protocol import (
+    End,
+    EndpointError,
+    EndReason,
+    FarEndGoneError,
+    Frame,
+    Listener,
+    differences,
+    refuse_other_sample_time,
+)
 from laglab_station.errors import RobotSilentError
 from laglab_station.station import Station
 
 HEARTBEAT_PERIOD = 0.1
 """[s] between heartbeats while the robot has not been heard."""
 
+CALL_AGAIN = 0.5
+"""[s] A robot that says nothing for so long may have begun again, and wait for a heartbeat."""
+
+PATIENT_WITH_KEYS = 1.0
+"""[s] After so long without a frame that we may take, we say how many we may not."""
+
+
+class Onlooker:
+    """Told of all that happens at the station; this one looks away."""
+
+    def warned(self, text: str) -> None:
+        """Something, in a line, that a person must not overlook."""
+
+    def said(self, frames: Sequence[bytes], tick: int | None) -> None:
+        """Whole frames crossed the link, either way, at or after the `tick` last answered."""
+
+    def answered(self, tick: int) -> None:
+        """A tick is over for the station: nobody waits for it now."""
+
 
 def run_station(
     station: Station,
-    endpoint: Endpoint,
+    listener: Listener,
     silence_timeout: float = 3.0,
-    warn: Callable[[str], None] | None = None,
+    onlooker: Onlooker | None = None,
 ) -> End:
     """Make the station known, then answer the robot until one side ends the run; say what ended it.
 
-    `warn` is told at once when the station has something to warn of, and once only.
-    Raises RobotSilentError when the robot, once heard, says nothing for `silence_timeout` seconds,
-    and EndpointError when the endpoint fails. Interrupted by the keyboard, it tells the robot.
+    However it ends, the robot is told.
+
+    Raises:
+        RobotSilentError: the robot, once heard, says nothing for `silence_timeout` seconds.
+        SettingsError: the robot ticks at another pace.
+        EndpointError: the endpoint fails, and does not come back in that time.
     """
+    loop = _Loop(station, listener, silence_timeout, onlooker or Onlooker())
     try:
-        _introduce(station, endpoint)
-        return _answer_until_end(station, endpoint, silence_timeout, warn)
+        loop.introduce()
+        return loop.answer_until_end()
     except KeyboardInterrupt:
-        endpoint.send(station.end(EndReason.INTERRUPTED))
+        loop.say(station.end(EndReason.INTERRUPTED))
+        raise
+    except BaseException:
+        with suppress(EndpointError):
+            listener.link.send(b"".join(station.end(EndReason.FAILED)))
         raise
 
 
-def _introduce(station: Station, endpoint: Endpoint) -> None:
-    while station.tick is None and not station.closed:
-        endpoint.send(station.heartbeat())
-        _answer(station, endpoint, HEARTBEAT_PERIOD)
+class _Loop:
+    def __init__(
+        self, station: Station, listener: Listener, silence_timeout: float, onlooker: Onlooker
+    ) -> None:
+        self._station = station
+        self._listener = listener
+        self._link = listener.link
+        self._silence_timeout = silence_timeout
+        self._onlooker = onlooker
+        self._warned = 0
+        self._heard = monotonic()
+        self._called = -HEARTBEAT_PERIOD
+        self._compared = False
 
+    def say(self, frames: list[bytes]) -> None:
+        self._link.send(b"".join(frames))
+        self._onlooker.said(frames, self._station.tick)
 
-def _answer_until_end(
-    station: Station,
-    endpoint: Endpoint,
-    silence_timeout: float,
-    warn: Callable[[str], None] | None,
-) -> End:
-    heard = time.monotonic()
-    while not station.closed:
-        if _answer(station, endpoint, silence_timeout):
-            heard = time.monotonic()
-        elif time.monotonic() - heard >= silence_timeout:
-            break
-        if warn and station.warning:
-            warn(station.warning)
-            warn = None
-    if station.outcome is None:
-        raise RobotSilentError(
-            f"{endpoint.name}: the robot has been silent for {silence_timeout:g} s, since its tick "
-            f"{station.tick}: see whether its process still runs and the link is up"
-        )
-    return station.outcome
+    def introduce(self) -> None:
+        started = monotonic()
+        while self._station.tick is None and not self._station.closed:
+            self._call_every(HEARTBEAT_PERIOD)
+            self._answer(HEARTBEAT_PERIOD)
+            if monotonic() - started > PATIENT_WITH_KEYS:
+                self._tell_of_keys()
+        if not self._compared and self._station.tick is not None:
+            self._station.warn("settings", "the robot does not tell its settings")
 
+    def answer_until_end(self) -> End:
+        while not self._station.closed:
+            if self._answer(min(CALL_AGAIN, self._silence_timeout)):
+                continue
+            silence = monotonic() - self._heard
+            if silence >= self._silence_timeout:
+                break
+            if silence >= CALL_AGAIN:
+                self._call_every(CALL_AGAIN)
+        if self._station.outcome is None:
+            raise RobotSilentError(
+                f"{self._link.name}: the robot has been silent for {self._silence_timeout:g} s, "
+                f"since its tick {self._station.tick}: see whether its process still runs and the "
+                "link is up"
+            )
+        return self._station.outcome
 
-def _answer(station: Station, endpoint: Endpoint, timeout: float) -> bool:
-    """Whether something came that was worth an answer."""
-    data = endpoint.receive(timeout)
-    answer = station.receive(data, endpoint.datagrams) if data else b""
-    if answer:
-        endpoint.accept_peer()
-        endpoint.send(answer)
-        station.look_ahead()
-    return bool(answer)
+    def _call_every(self, period: float) -> None:
+        """Bytes that are no frame yet, or never will be, make no call more frequent."""
+        if monotonic() - self._called >= period:
+            self._called = monotonic()
+            self.say(self._station.heartbeat())
+
+    def _answer(self, timeout: float) -> bool:
+        """Whether the robot said anything."""
+        frames = self._listen(timeout)
+        if not frames:
+            return False
+        answer = self._station.hear(frames)
+        if answer:
+            self._link.accept_peer()
+            self._link.send(b"".join(answer))
+            self._station.look_ahead()
+        self._onlooker.said([frame.raw for frame in frames] + answer, self._station.tick)
+        if self._station.tick is not None:
+            self._onlooker.answered(self._station.tick)
+        self._look_around()
+        return True
+
+    def _listen(self, timeout: float) -> list[Frame]:
+        """What the robot in force says; a link that broke is given time to come back."""
+        try:
+            frames = self._listener.listen(timeout)
+        except FarEndGoneError as error:
+            self._reopen(error)
+            return []
+        now, link = monotonic(), self._link
+        if not frames or (link.sender != link.peer and link.peer and now - self._heard < 1.0):
+            return []
+        self._heard = now
+        return frames
+
+    def _reopen(self, error: FarEndGoneError) -> None:
+        self._station.warn("gone", f"{error}; waiting for it to come back")
+        self._look_around()
+        deadline = self._heard + self._silence_timeout
+        while monotonic() < deadline:
+            sleep(HEARTBEAT_PERIOD)
+            try:
+                self._link.reopen()
+            except EndpointError:
+                continue
+            self.say(self._station.heartbeat())
+            return
+        raise error
+
+    def _look_around(self) -> None:
+        """Compare what the robot was told, once it says so; pass warnings on."""
+        robot, station = self._station.robot_settings, self._station.settings
+        if robot is not None and not self._compared:
+            self._compared = True
+            refuse_other_sample_time(robot, station)
+            if said := differences(robot, station):
+                self._station.warn("settings", f"the two sides were told different things: {said}")
+        for text in self._station.warnings[self._warned :]:
+            self._warned += 1
+            self._onlooker.warned(text)
+
+    def _tell_of_keys(self) -> None:
+        if refused := self._listener.refused:
+            text = f"{self._link.name}: {refused} frames refused: not signed with this key"
+            self._station.warn("keys", text)
+            self._look_around()

@@ -1,34 +1,27 @@
-"""The station looking at itself: how long its ticks take, and whether popf's gain is too high."""
+"""What a station has to say of its run."""
 
-from array import array
-from typing import NamedTuple
+from msgspec import Struct
 
-import numpy as np
-
-
-class TickTimes(NamedTuple):
-    """How long a tick waited for the station's answer [s]: half of the ticks, 99 %, all."""
-
-    p50: float
-    p99: float
-    longest: float
+from laglab_protocol import Quantiles
 
 
-class StationReport(NamedTuple):
+class StationReport(Struct, frozen=True):
     """How a station's run went."""
 
-    command_delay: int
+    n_seen: int
     """n [ticks], as the robot's echoes have it at the end."""
-    measurement_delay: int | None
+    m_seen: int | None
     """m [ticks] of the last measurement."""
-    tick_times: TickTimes | None
-    """None for a station without a clock, or without ticks."""
-    warnings: tuple[str, ...]
+    tick_p50_s: float | None = None
+    """Within so long [s] half of the ticks were answered; None for a station without a clock."""
+    tick_p99_s: float | None = None
+    tick_longest_s: float | None = None
+    warnings: tuple[str, ...] = ()
 
-
-def tick_times(nanoseconds: "array[int]") -> TickTimes | None:
-    """Of all ticks timed."""
-    if not nanoseconds:
-        return None
-    p50, p99, longest = np.percentile(np.array(nanoseconds), [50, 99, 100]) / 1e9
-    return TickTimes(float(p50), float(p99), float(longest))
+    @classmethod
+    def of(
+        cls, n_seen: int, m_seen: int | None, times: Quantiles | None, warnings: tuple[str, ...]
+    ) -> "StationReport":
+        """With the times of the ticks, if they were taken."""
+        p50, p99, longest = times or (None, None, None)
+        return cls(n_seen, m_seen, p50, p99, longest, warnings)

@@ -1,13 +1,27 @@
-"""A recorded session, tick by tick, as the station lived through it."""
+"""What a station heard and said, tick by tick, from the log of a run."""
 
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from laglab_protocol import Command, Frame, Measurement, Tick, read_tlog
+from laglab_protocol import (
+    ROBOT_COMPONENT,
+    ROBOT_SYSTEM,
+    STATION_COMPONENT,
+    STATION_SYSTEM,
+    Command,
+    Estimate,
+    Frame,
+    Measurement,
+    Tick,
+    read_tlog,
+)
+
+ROBOT = ROBOT_SYSTEM, ROBOT_COMPONENT
+STATION = STATION_SYSTEM, STATION_COMPONENT
 
 
-class Heard(NamedTuple):
+class SessionTick(NamedTuple):
     """One tick of a session."""
 
     tick: int
@@ -15,9 +29,11 @@ class Heard(NamedTuple):
     """All that arrived at this tick, however late, in the order in which they came."""
     command: Command | None
     """As sent at this tick; None when nothing was, and the robot held what it had."""
+    estimate: Estimate | None = None
+    """As told at this tick."""
 
 
-def read_session(path: Path) -> Iterator[Heard]:
+def read_session(path: Path) -> Iterator[SessionTick]:
     """The session in a telemetry log (`robot.tlog`), of a simulated or a real robot.
 
     Raises TlogError when the file is none.
@@ -25,21 +41,30 @@ def read_session(path: Path) -> Iterator[Heard]:
     return heard(frame for _, frame in read_tlog(path))
 
 
-def heard(frames: Iterable[Frame]) -> Iterator[Heard]:
-    """The ticks in the frames of both directions; repeats and what is not whole are passed over."""
+def heard(frames: Iterable[Frame]) -> Iterator[SessionTick]:
+    """The ticks in the frames of both directions; repeats, what is not whole and what others than
+    the robot and its station said are passed over."""
     arriving: list[Measurement] = []
-    last: Heard | None = None
+    last: SessionTick | None = None
     for frame in frames:
-        match frame.message:
-            case Measurement():
-                arriving.append(frame.message)
-            case Tick(tick, count):
+        match (frame.system, frame.component), frame.message:
+            case speaker, Measurement() as measurement if speaker == ROBOT:
+                arriving.append(measurement)
+            case speaker, Tick(tick, count) if speaker == ROBOT:
                 if len(arriving) == count and (last is None or tick > last.tick):
                     if last is not None:
                         yield last
-                    last = Heard(tick, tuple(arriving), None)
+                    last = SessionTick(tick, tuple(arriving), None)
                 arriving = []
-            case Command(tick=tick) if last is not None and tick == last.tick:
-                last = last._replace(command=frame.message)
+            case speaker, Command() | Estimate() as said if speaker == STATION and last:
+                last = _with(last, said)
     if last is not None:
         yield last
+
+
+def _with(last: SessionTick, said: Command | Estimate) -> SessionTick:
+    if said.tick != last.tick:
+        return last
+    if isinstance(said, Command):
+        return last._replace(command=said)
+    return last._replace(estimate=said)

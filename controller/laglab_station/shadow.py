@@ -1,36 +1,37 @@
-"""An estimator over a recorded session: what it would have said in the station's place."""
+"""An estimator beside a session that is over."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
 
-from laglab_control.controller import Control, Controller, StationConfig
-from laglab_control.laws.aicardi import Drive
+from laglab_control import Control, Controller, Demand, StationConfig
 from laglab_control.model import Matrix, Vector
 from laglab_station.hearing import echoes, measured
-from laglab_station.session import Heard
+from laglab_station.session import SessionTick
+
+NOTHING = np.full((3, 3), np.nan)
 
 
-class Shadow(NamedTuple):
-    """What the estimator says at the ticks heard; NaN where it says nothing."""
+class ShadowRow(NamedTuple):
+    """What the estimator says at a tick heard; NaN where it says nothing."""
 
-    ticks: Vector
-    """(N,), as recorded; fewer than were heard when the estimate has become infinite."""
-    estimates: Vector
-    """(N, 3) [m, m, rad]."""
-    covariances: Matrix
-    """(N, 3, 3)."""
+    tick: int
+    """As recorded."""
+    x: Vector
+    """(3,) [m, m, rad]."""
+    P: Matrix
+    """(3, 3)."""
 
 
-def shadow(config: StationConfig, session: Iterable[Heard]) -> Shadow:
+def shadow(config: StationConfig, session: Iterable[SessionTick]) -> Iterator[ShadowRow]:
     """Run `config.estimator` beside the commands that were sent; the first tick heard is tick 0.
 
-    The law of `config` is not asked. Over ticks that are missing, the last command held.
+    The law of `config` is not asked. Over ticks that are missing, the last command held. It ends
+    early when the estimate has become infinite.
     """
     controller = Controller(config)
     control = controller.start()
-    answer: list[tuple[int, Vector, Matrix]] = []
     first = last = None
     for heard in session:
         first, last = (heard.tick, heard.tick) if first is None or last is None else (first, last)
@@ -40,22 +41,15 @@ def shadow(config: StationConfig, session: Iterable[Heard]) -> Shadow:
         control = _followed(controller, control, heard, first)
         x, P = control.estimate.x, control.estimate.P
         if x is not None and not np.all(np.isfinite(x)):
-            break
-        nothing = np.full((3, 3), np.nan)
-        answer.append((last, nothing[0] if x is None else x, nothing if P is None else P))
-    ticks, estimates, covariances = zip(*answer, strict=True) if answer else ((), (), ())
-    return Shadow(
-        np.array(ticks, dtype=np.float64),
-        np.array(estimates, dtype=np.float64).reshape(-1, 3),
-        np.array(covariances, dtype=np.float64).reshape(-1, 3, 3),
-    )
+            return
+        yield ShadowRow(last, NOTHING[0] if x is None else x, NOTHING if P is None else P)
 
 
-def _followed(controller: Controller, control: Control, heard: Heard, first: int) -> Control:
+def _followed(controller: Controller, control: Control, heard: SessionTick, first: int) -> Control:
     """The controller's answer, but with the command that was really sent, or the last one."""
     drive = control.drive
     if heard.command is not None:
-        drive = Drive(heard.command.v, heard.command.omega, at_goal=False)
+        drive = Demand(heard.command.v, heard.command.omega, at_goal=False)
     with np.errstate(over="ignore", invalid="ignore"):
         control = controller.answer(
             control,

@@ -1,34 +1,36 @@
-"""The station's side of the link without I/O: the robot's bytes in, the answer's bytes out."""
+"""The station's side of the link without I/O: the robot's frames in, the answer's frames out."""
 
-from array import array
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from laglab_control.controller import Control, Controller, StationConfig, diverged
-from laglab_control.estimators.interface import State
+from laglab_control import Control, Controller, State, StationConfig
+from laglab_control.controller import diverged
 from laglab_control.flight import MEMORY
 from laglab_protocol import (
     STATION_COMPONENT,
     STATION_HEARTBEAT,
     STATION_SYSTEM,
     UNANNOUNCED,
-    Codec,
     Command,
+    Durations,
     End,
     EndReason,
     Estimate,
     Frame,
     Measurement,
     Message,
+    Restart,
+    Sender,
+    Settings,
     Tick,
     Timesync,
 )
 from laglab_station.hearing import echoes, measured
 from laglab_station.joining import Rest, observe, prior
-from laglab_station.report import StationReport, tick_times
+from laglab_station.report import StationReport
 
 LONGEST_GAP = MEMORY
 """Ticks without a word, after which nobody knows what the robot did meanwhile."""
@@ -42,7 +44,7 @@ class Station:
     is every other sender once a robot was heard. A robot first heard at tick 0 starts where the
     station was told; one that is already under way, or was not heard for LONGEST_GAP ticks, is
     taken over from a standstill (`joining`), and the tick at which its pose is known is tick 0 of
-    section 3.
+    section 3. One whose ticks begin again is met anew.
     """
 
     def __init__(
@@ -50,18 +52,24 @@ class Station:
         config: StationConfig,
         controller: Callable[[StationConfig], Controller] = Controller,
         clock: Callable[[], int] | None = None,
-        codec: Codec | None = None,
+        sender: Sender | None = None,
+        settings: Settings | None = None,
     ) -> None:
-        """`clock` [ns] times the ticks and answers TIMESYNC; without one neither is done."""
-        codec = codec or Codec(STATION_SYSTEM, STATION_COMPONENT)
+        """`clock` [ns] times the ticks and answers TIMESYNC; without one neither is done.
+
+        `settings` is what the robot is told to compare with; by default what `config` knows.
+        """
         self._config = config
         self._make_controller = controller
         self._clock = clock
         self._controller = controller(config)
         self._joining: Rest | None = None
-        self._sender, self._receiver = codec.sender, codec.receiver
+        self._sender = sender or Sender(STATION_SYSTEM, STATION_COMPONENT)
+        self.settings = settings or Settings(config.model.sample_time)
+        self.robot_settings: Settings | None = None
         self._robot: tuple[int, int] | None = None
         self._measurements: deque[Measurement] = deque(maxlen=UNANNOUNCED)
+        self._restart = Restart()
         self._first = 0
         self._control = self._controller.start()
         self._ahead: Control | None = None
@@ -71,8 +79,9 @@ class Station:
         self._outcome: End | None = None
         self._closed = False
         self._measurement_delay: int | None = None
-        self._times = array("q")
-        self._warning: str | None = None
+        self._times = Durations()
+        self._warnings: dict[str, str] = {}
+        """By what they are about: of each the first."""
         self._unjudged = False
         """Whether measurements came at this tick, and nobody has looked for warnings since."""
 
@@ -92,30 +101,31 @@ class Station:
         return self._tick
 
     @property
-    def warning(self) -> str | None:
-        """What the station has to warn of; None while there is nothing."""
+    def warnings(self) -> tuple[str, ...]:
+        """What the station has to warn of, in the order in which it was found."""
         self._judge()
-        return self._warning
+        return tuple(self._warnings.values())
+
+    def warn(self, about: str, text: str) -> None:
+        """Put a warning on record, unless there is one about this already."""
+        self._warnings.setdefault(about, text)
 
     def report(self) -> StationReport:
         """How the run went so far."""
-        return StationReport(
-            self._control.flight.command_delay,
-            self._measurement_delay,
-            tick_times(self._times),
-            warnings=(self.warning,) if self.warning else (),
-        )
+        n_seen = self._control.flight.command_delay
+        times = self._times.quantiles()
+        return StationReport.of(n_seen, self._measurement_delay, times, self.warnings)
 
-    def heartbeat(self) -> bytes:
-        """The frame that makes the station known to the robot."""
-        return self._sender.frame(STATION_HEARTBEAT)
+    def heartbeat(self) -> list[bytes]:
+        """The frames that make the station known to the robot, and what it was told."""
+        return self._framed([STATION_HEARTBEAT, self.settings])
 
-    def receive(self, data: bytes, datagram: bool) -> bytes:
-        """What to send back for `data`, perhaps nothing; `datagram` says that it is a whole one."""
-        frames = self._receiver.receive(data)
-        if datagram:
-            frames += self._receiver.end_datagram()
-        return b"".join([self._hear(frame) for frame in frames])
+    def hear(self, frames: Sequence[Frame]) -> list[bytes]:
+        """The frames to send back for these, perhaps none."""
+        answers: list[Message] = []
+        for frame in frames:
+            answers += self._hear(frame)
+        return self._framed(answers)
 
     def look_ahead(self) -> None:
         """Do now, while the robot is busy with the answer, what the next one would wait for."""
@@ -128,49 +138,61 @@ class Station:
                 due = self._ahead.flight.tick - self._measurement_delay
                 self._ahead = self._controller.expect(self._ahead, due)
 
-    def end(self, reason: EndReason) -> bytes:
-        """End the run from this side: the frame to send."""
+    def end(self, reason: EndReason) -> list[bytes]:
+        """End the run from this side: the frames to send."""
         self._outcome = End(self._tick or 0, reason)
-        return self._sender.frame(self._outcome)
+        return self._framed([self._outcome])
 
-    def _hear(self, frame: Frame) -> bytes:
+    def _hear(self, frame: Frame) -> list[Message]:
         sender = (frame.system, frame.component)
         if self._robot not in (None, sender):
-            return b""
+            return []
         match frame.message:
             case Measurement():
                 self._measurements.append(frame.message)
             case Tick():
                 self._robot = sender
                 return self._hear_tick(frame.message)
-            case End() if self._robot:
+            case End():
                 return self._hear_end(frame.message)
+            case Settings():
+                self.robot_settings = frame.message
             case Timesync(tc1=0, ts1=asked) if self._clock:
-                return self._sender.frame(Timesync(self._clock(), asked))
-        return b""
+                return [Timesync(self._clock(), asked)]
+        return []
 
-    def _hear_end(self, end: End) -> bytes:
-        """Answered once with the same; it may itself be the answer to ours."""
+    def _hear_end(self, end: End) -> list[Message]:
+        """Answered once with the same; it may itself be the answer to ours. What ends a run that
+        is past ends nothing."""
+        if self._tick is None or end.tick < self._tick:
+            if end.reason == EndReason.DISPLACED:
+                self.warn("displaced", "another station has the robot: calling until it lets go")
+            return []
         answered, self._closed = self._outcome is not None, True
         if answered:
-            return b""
+            return []
         self._outcome = end
-        return self._sender.frame(end)
+        return [end]
 
-    def _hear_tick(self, message: Tick) -> bytes:
+    def _hear_tick(self, message: Tick) -> list[Message]:
         measurements = list(self._measurements)
         self._measurements.clear()
         if len(measurements) != message.measurements:
-            return b""
-        unknown = self._tick is None or message.tick - self._tick > LONGEST_GAP
-        if unknown and self._outcome is None:
+            return []
+        if self._outcome is None and self._is_new(message.tick):
             self._meet(message.tick)
         if message.tick == self._tick:
-            return self._framed()
+            return self._answer
         if self._outcome is None and (self._tick is None or message.tick > self._tick):
             self._advance_timed(message.tick, measurements)
-            return self._framed()
-        return b""
+            return self._answer
+        return []
+
+    def _is_new(self, tick: int) -> bool:
+        """Whether the robot is one that we know nothing of, at its tick."""
+        if self._tick is None or tick - self._tick > LONGEST_GAP:
+            return True
+        return self._restart.shows(tick, self._tick)
 
     def _meet(self, tick: int) -> None:
         """A robot that is new to us at this tick."""
@@ -184,7 +206,7 @@ class Station:
         with np.errstate(over="ignore", invalid="ignore"):  # what follows is seen as diverged
             self._advance(tick, measurements)
         if self._clock:
-            self._times.append(self._clock() - started)
+            self._times.add(self._clock() - started)
 
     def _advance(self, tick: int, measurements: list[Measurement]) -> None:
         if self._joining is None:
@@ -213,8 +235,8 @@ class Station:
         assert self._robot is not None, "nobody was heard yet"
         return self._robot
 
-    def _framed(self) -> bytes:
-        return b"".join([self._sender.frame(message) for message in self._answer])
+    def _framed(self, messages: list[Message]) -> list[bytes]:
+        return [self._sender.frame(message) for message in messages]
 
     def _step(self, tick: int, measurements: list[Measurement]) -> None:
         """On to `tick`; over ticks that were lost on the way the robot held the last command."""
@@ -233,10 +255,11 @@ class Station:
         self._unjudged = bool(arrived)
 
     def _judge(self) -> None:
-        if self._unjudged and self._warning is None:
-            said = self._controller.warning(self._control)
-            self._warning = f"tick {self._tick}: {said}" if said else None
+        if not self._unjudged:
+            return
         self._unjudged = False
+        if said := self._controller.warning(self._control):
+            self.warn("estimator", f"tick {self._tick}: {said}")
 
     def _messages(self, tick: int, control: Control) -> list[Message]:
         estimates = _estimate(tick, control.estimate)

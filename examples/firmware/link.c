@@ -1,11 +1,12 @@
 #include "link.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
 #include <laglab/mavlink.h>
 
-enum { ROBOT_SYSTEM = 1, STATION_SYSTEM = 200 };
+enum { ROBOT_SYSTEM = 1, STATION_SYSTEM = 200, DIALECT_VERSION = 2 };
 #define ROBOT_COMPONENT MAV_COMP_ID_AUTOPILOT1
 #define STATION_COMPONENT MAV_COMP_ID_MISSIONPLANNER
 
@@ -32,6 +33,8 @@ static LinkEvent event_of(const mavlink_message_t *message) {
     switch (message->msgid) {
     case MAVLINK_MSG_ID_HEARTBEAT:
         return (LinkEvent){.kind = LINK_BEGIN};
+    case MAVLINK_MSG_ID_LAGLAB_SETTINGS:
+        return (LinkEvent){.kind = LINK_SETTINGS};
     case MAVLINK_MSG_ID_LAGLAB_COMMAND:
         return command_of(message);
     case MAVLINK_MSG_ID_COMMAND_LONG:
@@ -96,6 +99,14 @@ size_t link_write_refusal(uint8_t *buffer, uint16_t request) {
     mavlink_message_t message;
     mavlink_msg_command_ack_pack(ROBOT_SYSTEM, ROBOT_COMPONENT, &message, request, MAV_RESULT_UNSUPPORTED, 0, 0,
                                  STATION_SYSTEM, STATION_COMPONENT);
+    return mavlink_msg_to_send_buffer(buffer, &message);
+}
+
+/* What this robot knows of itself: it has no limits, and its link's delays are nothing that it could know. */
+size_t link_write_settings(uint8_t *buffer) {
+    mavlink_message_t message;
+    mavlink_msg_laglab_settings_pack(ROBOT_SYSTEM, ROBOT_COMPONENT, &message, SAMPLE_TIME, NAN, NAN, INFINITY, INFINITY,
+                                     UINT16_MAX, UINT16_MAX, DIALECT_VERSION);
     return mavlink_msg_to_send_buffer(buffer, &message);
 }
 

@@ -12,7 +12,7 @@
 
 /* What a station can ask of the robot. */
 typedef struct {
-    enum { LINK_NOTHING, LINK_BEGIN, LINK_COMMAND, LINK_REQUEST, LINK_END } kind;
+    enum { LINK_NOTHING, LINK_BEGIN, LINK_SETTINGS, LINK_COMMAND, LINK_REQUEST, LINK_END } kind;
     Command command;
     uint16_t request; /* a MAV_CMD */
     uint8_t reason;   /* of an end */
@@ -29,6 +29,9 @@ size_t link_write_tick(uint8_t *buffer, uint32_t tick, Pose seen, Command in_for
 
 /* The answer to a request: this robot knows none. Its size. */
 size_t link_write_refusal(uint8_t *buffer, uint16_t request);
+
+/* The answer to a station that says what it was told. Its size. */
+size_t link_write_settings(uint8_t *buffer);
 
 /* The answer to an end. Its size. */
 size_t link_write_end(uint8_t *buffer, uint32_t tick, uint8_t reason);

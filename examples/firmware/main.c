@@ -48,6 +48,8 @@ static bool obey(Robot *robot, LinkEvent event) {
     switch (event.kind) {
     case LINK_REQUEST:
         return send(robot, buffer, link_write_refusal(buffer, event.request));
+    case LINK_SETTINGS:
+        return send(robot, buffer, link_write_settings(buffer));
     case LINK_BEGIN:
         if (!robot->running) {
             robot->running = true;

@@ -4,7 +4,7 @@ from laglab_gateway.core import Gateway
 from laglab_gateway.drive import Safety
 from laglab_gateway.errors import (
     GatewayError,
-    RobotSilentError,
+    PlantSilentError,
     StationSilentError,
     TimelineError,
     TraceError,
@@ -12,24 +12,32 @@ from laglab_gateway.errors import (
 from laglab_gateway.link.channel import Channel
 from laglab_gateway.link.fates import Fates, RandomFates
 from laglab_gateway.link.impairments import IDEAL, Burst, ExtraDelay, Impairments
-from laglab_gateway.link.log import RecordedFates, read_link_log
+from laglab_gateway.link.log import LinkRow, RecordedFates, read_link_log
 from laglab_gateway.link.timeline import Direction, Event
-from laglab_gateway.loops.conversation import Link, Patience
 from laglab_gateway.loops.lockstep import serve_lockstep
-from laglab_gateway.loops.realtime import Lateness, serve_realtime
+from laglab_gateway.loops.realtime import serve_realtime
 from laglab_gateway.loops.remote import serve_remote
+from laglab_gateway.loops.surroundings import Patience, Served, Surroundings
 from laglab_gateway.loops.watch import Watch, Watcher
 from laglab_gateway.plant import Plant, Reading
-from laglab_gateway.record.recorder import (
+from laglab_gateway.record.audit import ClockReport, DelayReport, DirectionReport, LinkReport
+from laglab_gateway.record.files import (
     LINK_FILE,
     TIMING_FILE,
     TLOG_FILE,
     TRACE_FILE,
     FileRecorder,
-    NoRecorder,
-    Recorder,
 )
-from laglab_gateway.record.trace import Trace, TraceRow, read_trace
+from laglab_gateway.record.lateness import Lateness, TimingReport
+from laglab_gateway.record.recorder import MemoryRecorder, Recorder, Tapped, TimingRow
+from laglab_gateway.record.trace import (
+    Trace,
+    TraceRow,
+    format_row,
+    read_trace,
+    trace_of,
+    trace_pieces,
+)
 from laglab_gateway.relay import Relay
 from laglab_gateway.services import (
     Parameter,
@@ -48,7 +56,10 @@ __all__ = [
     "TRACE_FILE",
     "Burst",
     "Channel",
+    "ClockReport",
+    "DelayReport",
     "Direction",
+    "DirectionReport",
     "Event",
     "ExtraDelay",
     "Fates",
@@ -58,34 +69,43 @@ __all__ = [
     "GatewayError",
     "Impairments",
     "Lateness",
-    "Link",
-    "NoRecorder",
+    "LinkReport",
+    "LinkRow",
+    "MemoryRecorder",
     "Outcome",
     "Parameter",
     "Parameters",
     "Patience",
     "Plant",
+    "PlantSilentError",
     "RandomFates",
     "Reading",
     "RecordedFates",
     "Recorder",
     "Relay",
     "RobotSide",
-    "RobotSilentError",
     "Safety",
+    "Served",
     "Services",
     "StationSilentError",
+    "Surroundings",
+    "Tapped",
     "TimelineError",
     "Timesyncing",
+    "TimingReport",
+    "TimingRow",
     "Trace",
     "TraceError",
     "TraceRow",
     "Watch",
     "Watcher",
+    "format_row",
     "read_link_log",
     "read_trace",
     "serve_lockstep",
     "serve_realtime",
     "serve_remote",
     "standard_parameters",
+    "trace_of",
+    "trace_pieces",
 ]

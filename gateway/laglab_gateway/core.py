@@ -16,7 +16,7 @@ from laglab_gateway.plant import Plant
 from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import RobotState, Services, standard_parameters
 from laglab_gateway.side import GatewayConfig, RobotSide
-from laglab_protocol import Codec, Measurement
+from laglab_protocol import Measurement, Sender
 
 
 class Gateway(RobotSide):
@@ -28,22 +28,22 @@ class Gateway(RobotSide):
         config: GatewayConfig,
         fates: Mapping[Direction, Fates] | None = None,
         services: Services | None = None,
-        codec: Codec | None = None,
+        sender: Sender | None = None,
     ) -> None:
         n, m = config.command_delay, config.measurement_delay
+        services = services or Services(standard_parameters(n, m, config.safety))
+        super().__init__(config, services, fates, sender)
         self._plant = plant
         self._speeds = (0.0, 0.0)
-        super().__init__(
-            config, services or Services(standard_parameters(n, m, config.safety)), fates, codec
-        )
+        self._reading = plant.read()
 
     @property
     def immediate(self) -> bool:
         """Whether the command of a tick takes force at that tick."""
         return self._config.command_delay == 0
 
-    def _begin_tick(self, tick: int) -> None:
-        super()._begin_tick(tick)
+    def _begin_tick(self) -> None:
+        self._go_to(self.tick + 1)
         if pose := self.services.arming.take_reset():
             self._plant.place(*pose)
         self._reading = self._plant.read()
@@ -76,7 +76,7 @@ class Gateway(RobotSide):
             self._follow(command, k)
         supervised = supervise(self._drive, k, Ts, safety)
         if supervised.mode is not self._drive.mode:
-            self.audit.stops.append(k)
+            self.audit.stopped(k)
             self.announce(f"no fresh command for {safety.link_timeout} s: stopping")
         self._drive = supervised
         self._speeds = self._armed(*speeds(self._drive, k, Ts, safety))
@@ -88,5 +88,5 @@ class Gateway(RobotSide):
         row = self._row(self._reading[:3], self._reading[3:6], self._speeds)
         self._close()
         if self.outcome is None:
-            self._begin_tick(self.tick + 1)
+            self._begin_tick()
         return row

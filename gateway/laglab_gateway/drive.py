@@ -27,7 +27,7 @@ class Mode(Enum):
     STOPPING = auto()
 
 
-class Refusal(Enum):
+class Rejection(Enum):
     """Why a command is not followed."""
 
     NOT_FINITE = "not finite"
@@ -60,13 +60,13 @@ class Drive:
     fresh: int = 0
 
 
-def refusal(drive: Drive, command: Command, safety: Safety) -> Refusal | None:
+def rejection(drive: Drive, command: Command, safety: Safety) -> Rejection | None:
     """Why `command` is not to be followed; None when it is."""
     if not (math.isfinite(command.v) and math.isfinite(command.omega)):
-        return Refusal.NOT_FINITE
+        return Rejection.NOT_FINITE
     if _beyond(command.v, safety.v_limit) or _beyond(command.omega, safety.omega_limit):
-        return Refusal.OUT_OF_LIMITS
-    return Refusal.STALE if command.tick <= drive.command_tick else None
+        return Rejection.OUT_OF_LIMITS
+    return Rejection.STALE if command.tick <= drive.command_tick else None
 
 
 def _beyond(value: float, limit: float | None) -> bool:

@@ -16,7 +16,7 @@ class StationSilentError(GatewayError):
         )
 
 
-class RobotSilentError(GatewayError):
+class PlantSilentError(GatewayError):
     """A real robot, which has a clock of its own, stopped ticking (or never began)."""
 
     def __init__(self, link: str, tick: int | None, seconds: float) -> None:

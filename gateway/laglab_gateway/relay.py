@@ -10,6 +10,9 @@ from collections import deque
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from msgspec.structs import replace
+
+from laglab_gateway.drive import Drive
 from laglab_gateway.link.fates import Fates
 from laglab_gateway.link.timeline import Direction
 from laglab_gateway.record.trace import TraceRow
@@ -22,19 +25,22 @@ from laglab_protocol import (
     STATION_HEARTBEAT,
     STATION_SYSTEM,
     UNANNOUNCED,
-    Codec,
+    UNKNOWN_DELAY,
     Command,
     End,
     EndReason,
     Frame,
     Measurement,
+    Restart,
+    Sender,
+    Settings,
     Tick,
 )
 
 UNKNOWN = (None, None, None)
 
 
-class Heard(NamedTuple):
+class RobotTick(NamedTuple):
     """A tick of the robot, with all the measurements that it announced."""
 
     tick: int
@@ -49,8 +55,8 @@ def from_robot(frame: Frame) -> bool:
 class Relay(RobotSide):
     """A robot at the end of a link, as its station meets it.
 
-    For every frame of `receive_from_robot` that `hear` says begins a tick: `close_tick`, unless it
-    is the first, then `open_tick`. After anything has come from either side, `forward`.
+    For every frame of the robot that `hear_robot` says begins a tick: `close_tick`, unless it is
+    the first, then `open_tick`. After anything has come from either side, `forward`.
     """
 
     def __init__(
@@ -58,15 +64,17 @@ class Relay(RobotSide):
         config: GatewayConfig,
         services: Services,
         fates: Mapping[Direction, Fates] | None = None,
-        codec: Codec | None = None,
+        sender: Sender | None = None,
+        to_robot: Sender | None = None,
     ) -> None:
-        super().__init__(config, services, fates, codec)
+        super().__init__(config, services, fates, sender)
         self.under_way = False
         self.robot_end: End | None = None
-        robot_codec = Codec(STATION_SYSTEM, STATION_COMPONENT)
-        self._to_robot, self._from_robot = robot_codec.sender, robot_codec.receiver
+        self.robot_settings: Settings | None = None
+        self._to_robot = to_robot or Sender(STATION_SYSTEM, STATION_COMPONENT)
+        self._restart = Restart()
         self._samples: deque[Measurement] = deque(maxlen=UNANNOUNCED)
-        self._heard = Heard(-1, [])
+        self._heard = RobotTick(-1, [])
         self._last: Measurement | None = None
         self._in_force = -1
 
@@ -77,17 +85,15 @@ class Relay(RobotSide):
         return RobotState(self.time_us, *(last.pose + last.speeds if last else (0.0,) * 5))
 
     def greeting(self) -> bytes:
-        """The frame that makes the robot begin its ticks."""
-        return self._to_robot.frame(STATION_HEARTBEAT)
+        """The frames that make the robot begin its ticks, and say what it should have been told."""
+        return self._to_robot.frame(STATION_HEARTBEAT) + self._to_robot.frame(self.told_robot)
 
-    def receive_from_robot(self, data: bytes, whole: bool) -> list[Frame]:
-        """The robot's frames in these bytes. No frame goes on after `whole`."""
-        frames = self._from_robot.receive(data)
-        if whole:
-            frames += self._from_robot.end_datagram()
-        return [frame for frame in frames if from_robot(frame)]
+    @property
+    def told_robot(self) -> Settings:
+        """Our settings less the delays, which are the link's, behind which the robot is."""
+        return replace(self.settings, command_delay=UNKNOWN_DELAY, measurement_delay=UNKNOWN_DELAY)
 
-    def hear(self, frame: Frame) -> bool:
+    def hear_robot(self, frame: Frame) -> bool:
         """Take one frame of the robot; True when it begins a new tick, all announced with it.
 
         A tick of which a frame was lost is passed over: the robot does not repeat it.
@@ -98,25 +104,44 @@ class Relay(RobotSide):
             case Tick(tick, announced):
                 samples = list(self._samples)
                 self._samples.clear()
-                if len(samples) == announced and tick > self._heard.tick:
-                    self._heard = Heard(tick, samples)
+                if len(samples) == announced and self._is_next(tick):
+                    self._heard = RobotTick(tick, samples)
                     return True
+            case Settings():
+                self.robot_settings = frame.message
             case End():
                 self.robot_end = frame.message
                 self.outcome = self.outcome or Outcome(reason_of(frame.message), self.tick)
         return False
 
+    def _is_next(self, tick: int) -> bool:
+        return tick > self._heard.tick or self._restart.shows(tick, self._heard.tick)
+
     def open_tick(self) -> list[bytes]:
-        """Begin the tick just heard; the frames for the station."""
+        """Begin the tick just heard; the frames for the station.
+
+        Of a robot that has begun again the ticks go back: the time of the run goes on.
+        """
         tick, samples = self._heard
         if not self.under_way:
             self.first, self._in_force = tick, tick - 1
             self.under_way = True
-        self._begin_tick(tick)
+        elif tick < self.tick:
+            self._meet_anew(tick)
+        self._go_to(tick)
         for sample in samples:
             self._last = sample
             self._audit(sample)
         return self._tell(samples)
+
+    def _meet_anew(self, tick: int) -> None:
+        """What was on its way to the robot, or from it, was meant for the one before."""
+        self.announce(f"the robot has begun again at its tick {tick}")
+        self.first, self._in_force = tick - (self.elapsed + 1), tick - 1
+        self._answered_through = tick - 1
+        self._commands.clear()
+        self._measurements.clear()
+        self._drive = Drive()
 
     def _audit(self, sample: Measurement) -> None:
         """n by the robot's own word: the command of the sample was in force from s - 1 on."""

@@ -1,19 +1,20 @@
 """The robot's side as its station meets it, whatever it is that moves. No clock, no I/O.
 
-Bytes in, frames out; the two channels of the link with their audit; which command is followed.
+Frames in, frames out; the two channels of the link with their audit; which command is followed.
 What moves comes in two kinds: a plant that is stepped (`core`), and a robot with a clock of its
 own (`relay`).
 """
 
+import math
 from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from laglab_gateway.drive import Drive, Safety, follow, refusal
+from laglab_gateway.drive import Drive, Safety, follow, rejection
 from laglab_gateway.link.channel import Channel
-from laglab_gateway.link.fates import Fates, Kind
+from laglab_gateway.link.fates import FateKind, Fates
 from laglab_gateway.link.log import LinkRow
 from laglab_gateway.link.timeline import Direction
 from laglab_gateway.record.audit import Audit, DirectionAudit
@@ -25,7 +26,6 @@ from laglab_protocol import (
     STATION_COMPONENT,
     STATION_SYSTEM,
     UNANNOUNCED,
-    Codec,
     Command,
     End,
     EndReason,
@@ -34,6 +34,8 @@ from laglab_protocol import (
     Heartbeat,
     Measurement,
     Message,
+    Sender,
+    Settings,
     Statustext,
     Tick,
 )
@@ -41,13 +43,30 @@ from laglab_protocol import (
 
 @dataclass(frozen=True)
 class GatewayConfig:
-    """Delays n and m [ticks], the tick that ends the run, Ts [s], what else the link does."""
+    """Delays n and m [ticks], the tick that ends the run (infinite: none does), Ts [s]."""
 
     command_delay: int
     measurement_delay: int
-    last_tick: int
+    last_tick: float
     sample_time: float
     safety: Safety = field(default_factory=Safety)
+    wheel_radius: float = math.nan
+    """Of the robot [m], for the station to compare; NaN: not known."""
+    track: float = math.nan
+
+    @property
+    def settings(self) -> Settings:
+        """What the station is told of all this."""
+        v_limit, omega_limit = self.safety.v_limit, self.safety.omega_limit
+        return Settings(
+            sample_time=self.sample_time,
+            wheel_radius=self.wheel_radius,
+            track=self.track,
+            v_max=math.inf if v_limit is None else v_limit,
+            omega_max=math.inf if omega_limit is None else omega_limit,
+            command_delay=self.command_delay,
+            measurement_delay=self.measurement_delay,
+        )
 
 
 class Outcome(NamedTuple):
@@ -68,7 +87,7 @@ def _is_meant(command: Command) -> bool:
 
 
 def reason_of(end: End) -> EndReason:
-    """Why it ended; a reason that the dialect does not have counts as a failure."""
+    """Why a peer ended the run; a reason we do not know counts as a failure."""
     return EndReason(end.reason) if end.reason in set(EndReason) else EndReason.FAILED
 
 
@@ -84,7 +103,7 @@ class RobotSide(ABC):
         config: GatewayConfig,
         services: Services,
         fates: Mapping[Direction, Fates] | None = None,
-        codec: Codec | None = None,
+        sender: Sender | None = None,
     ) -> None:
         n, m, Ts = config.command_delay, config.measurement_delay, config.sample_time
         self.first = 0
@@ -93,12 +112,12 @@ class RobotSide(ABC):
         self.connected = False
         self.outcome: Outcome | None = None
         self.station_end: End | None = None
+        self.station_settings: Settings | None = None
         self.audit = Audit(DirectionAudit(n), DirectionAudit(m))
         self.services = services
+        self.settings = config.settings
         self._config = config
-        codec = codec or Codec(ROBOT_SYSTEM, ROBOT_COMPONENT)
-        self._sender, self._receiver = codec.sender, codec.receiver
-        self._replies: list[Message] = []
+        self._sender = sender or Sender(ROBOT_SYSTEM, ROBOT_COMPONENT)
         self._notices: list[Message] = []
         fates = fates or {}
         self._commands: Channel[Command] = Channel("command", n, Ts, fates.get("command"))
@@ -107,9 +126,10 @@ class RobotSide(ABC):
         )
         self._answered_through = -1
         self._drive = Drive()
-        self._begin_tick(0)
+        self._go_to(0)
 
-    def _begin_tick(self, tick: int) -> None:
+    def _go_to(self, tick: int) -> None:
+        """Nothing was said yet at this tick."""
         self.tick = tick
         self._batch: list[Message] = []
         self._estimates: deque[Estimate] = deque(maxlen=UNANNOUNCED)
@@ -153,18 +173,16 @@ class RobotSide(ABC):
         """The same messages in new frames: the station may have missed the first."""
         return [self._sender.frame(message) for message in self._batch]
 
-    def receive(self, data: bytes, whole: bool) -> list[Frame]:
-        """Take bytes from the link; returns the frames in them. No frame goes on after `whole`."""
-        frames = self._receiver.receive(data)
-        if whole:
-            frames += self._receiver.end_datagram()
+    def hear(self, frames: Sequence[Frame]) -> list[bytes]:
+        """Take frames from the link; returns what to say to whoever sent them."""
+        replies: list[Message] = []
         for frame in frames:
             if not from_station(frame) or not self._take(frame.message):
-                self._replies += self.services.answer(frame, self.state)
-        return frames
+                replies += self._answers(frame)
+        return [self._sender.frame(message) for message in replies]
 
     def _take(self, message: Message) -> bool:
-        """Take what belongs to the loop; False when it does not."""
+        """Take what belongs to the loop; False when it does not, or asks for a reply."""
         match message:
             case Heartbeat():
                 self.connected = True
@@ -179,10 +197,22 @@ class RobotSide(ABC):
             case Command() | Estimate():
                 pass  # said again, or of a tick that has not come
             case End():
-                self.station_end = message
+                self._take_end(message)
             case _:
                 return False
         return True
+
+    def _take_end(self, end: End) -> None:
+        """Of a run that is past, or that has not come this far, it ends nothing."""
+        begun = bool(self._batch)
+        if self.outcome or (begun and self._answered_through <= end.tick <= self.tick):
+            self.station_end = end
+
+    def _answers(self, frame: Frame) -> list[Message]:
+        if from_station(frame) and isinstance(frame.message, Settings):
+            self.station_settings = frame.message
+            return [self.settings]
+        return self.services.answer(frame, self.state)
 
     def _take_answer(self, command: Command) -> None:
         if len(self._estimates) < command.estimates:
@@ -195,9 +225,9 @@ class RobotSide(ABC):
         self._commands.push(self.elapsed, command)
 
     def _follow(self, command: Command, tick: int) -> bool:
-        """Follow from `tick` on a command that came across; False, and counted, when refused."""
-        if refused := refusal(self._drive, command, self.safety):
-            self.audit.refused[refused] += 1
+        """Follow from `tick` on a command that came across; False, and counted, when rejected."""
+        if rejected := rejection(self._drive, command, self.safety):
+            self.audit.refused[rejected] += 1
             return False
         self._drive = follow(command, tick)
         return True
@@ -217,16 +247,14 @@ class RobotSide(ABC):
         """Warn everybody who listens, in at most 50 characters, at the end of this tick."""
         self._notices.append(Statustext(MAV_SEVERITY_WARNING, text.encode()[:50]))
 
-    def take_replies(self) -> list[bytes]:
-        """The frames that answer requests since the last call: not of the loop, to be sent too."""
-        replies, self._replies = self._replies, []
-        return [self._sender.frame(message) for message in replies]
-
     def take_notices(self) -> list[Message]:
-        """What the robot did by itself since the last call: everybody is told."""
+        """What the robot did by itself since the last call: everybody is to be told."""
         notices, self._notices = self._notices, []
-        self._replies += notices
         return notices
+
+    def framed(self, messages: Iterable[Message]) -> list[bytes]:
+        """The robot's frames of these."""
+        return [self._sender.frame(message) for message in messages]
 
     def ask_time(self) -> list[bytes]:
         """The question how far the station's clock is away, if there is a clock to compare with."""
@@ -236,8 +264,8 @@ class RobotSide(ABC):
     def take_link_rows(self) -> list[LinkRow]:
         """What the link did to the frames that entered it since the last call."""
         measurements, commands = self._measurements.take_log(), self._commands.take_log()
-        self.audit.measurement.fates.update(Kind(row.fate) for row in measurements)
-        self.audit.command.fates.update(Kind(row.fate) for row in commands)
+        self.audit.measurement.fates.update(FateKind(row.fate) for row in measurements)
+        self.audit.command.fates.update(FateKind(row.fate) for row in commands)
         return [*measurements, *commands]
 
     @abstractmethod
@@ -256,6 +284,11 @@ class RobotSide(ABC):
     def _close(self) -> None:
         self.audit.unanswered += not self.answered
         self.outcome = self.outcome or self._ending
+
+    def stop(self, reason: EndReason) -> Outcome:
+        """End the run here, unless it is over already; how it ended."""
+        self.outcome = self.outcome or Outcome(reason, self.tick)
+        return self.outcome
 
     def _row(
         self,

@@ -6,11 +6,11 @@ from typing import Literal
 
 from laglab_conformance import controller, freerunning, lockstep
 from laglab_conformance.items import carry_out
-from laglab_conformance.report import Report, Result, Verdict
-from laglab_conformance.session import Patience
+from laglab_conformance.report import Mark, Report, Result
+from laglab_conformance.session import Waits
 from laglab_protocol.endpoints import open_endpoint
 
-__all__ = ["Pace", "Patience", "Report", "Result", "Verdict", "conform"]
+__all__ = ["Mark", "Pace", "Report", "Result", "Waits", "conform"]
 
 Side = Literal["robot", "controller"]
 Pace = Literal["lockstep", "realtime"]
@@ -20,7 +20,7 @@ def conform(
     url: str,
     side: Side,
     key_file: Path | None = None,
-    patience: Patience | None = None,
+    waits: Waits | None = None,
     pace: Pace = "lockstep",
     progress: Callable[[str], None] = lambda _: None,
 ) -> Report:
@@ -31,7 +31,7 @@ def conform(
     trees.
     """
     with open_endpoint(url) as endpoint:
-        talk = endpoint, patience or Patience(), key_file
+        talk = endpoint, waits or Waits(), key_file
         if side == "controller":
             results = carry_out(controller.ITEMS, controller.ControllerSession(*talk), progress)
         elif pace == "lockstep":

@@ -18,6 +18,7 @@ from laglab_protocol.messages.loop import (
     EndReason,
     Estimate,
     Measurement,
+    Settings,
     Tick,
 )
 from laglab_protocol.messages.standard import Heartbeat
@@ -31,7 +32,7 @@ class ControllerSession(Session):
     tick = 0
 
     def connect(self) -> None:
-        if self.listen(self.patience.appear, lambda frame: isinstance(frame.message, Heartbeat)):
+        if self.listen(self.waits.appear, lambda frame: isinstance(frame.message, Heartbeat)):
             return
         raise NoReactionError("no HEARTBEAT came")
 
@@ -48,7 +49,7 @@ class ControllerSession(Session):
         """What came back, up to the command, for these in one datagram. Raises NoReactionError."""
         before = len(self.heard)
         self.send(*messages)
-        if self.listen(self.patience.react, lambda frame: isinstance(frame.message, Command)):
+        if self.listen(self.waits.react, lambda frame: isinstance(frame.message, Command)):
             came = [frame.message for frame in self.heard[before:]]
             return [message for message in came if isinstance(message, Estimate | Command)]
         raise NoReactionError(f"no answer to {messages[-1]}")
@@ -143,12 +144,19 @@ def _ends(session: ControllerSession) -> str | None:
     """It answers END once with the same."""
     end, before = End(session.tick - 1, EndReason.COMPLETED), len(session.heard)
     session.send(end)
-    session.listen(session.patience.react, lambda frame: isinstance(frame.message, End))
+    session.listen(session.waits.react, lambda frame: isinstance(frame.message, End))
     session.quiet()
     answers = [each.message for each in session.heard[before:] if isinstance(each.message, End)]
     if len(answers) != 1:
         return f"answered {len(answers)} times"
     return None if answers[0] == end else f"{end} is answered with {answers[0]}"
+
+
+def _tells_settings(session: ControllerSession) -> str | None:
+    told = [each.message for each in session.heard if isinstance(each.message, Settings)]
+    if not told:
+        return "it calls without LAGLAB_SETTINGS"
+    return None if told[0].sample_time > 0 else f"its sample time is {told[0].sample_time}"
 
 
 ITEMS: list[Item[ControllerSession]] = [
@@ -161,6 +169,7 @@ ITEMS: list[Item[ControllerSession]] = [
     Item("lock-step", "time does not go back", _backwards),
     Item("lock-step", "commands are meant for the robot", _aims),
     Item("lock-step", "commands are finite", _finite),
+    Item("lock-step", "it tells its settings", _tells_settings, mandatory=False),
     Item("timing", f"it answers within {SOON} s", reacts_soon),
     *SIGNING,
     *SENDING,

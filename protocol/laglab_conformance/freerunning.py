@@ -11,6 +11,7 @@ from laglab_conformance.robot import (
     ENDS,
     NOT_FINITE,
     NOT_MEANT,
+    SETTINGS,
     STAMPED,
     RobotSession,
     is_after,
@@ -45,7 +46,7 @@ class FreeRunningSession(RobotSession):
         self.followed = self.tick
         super().go_on()
         if self.tick == self.followed:
-            self.listen(self.patience.react, partial(is_after, self.followed))
+            self.listen(self.waits.react, partial(is_after, self.followed))
             super().go_on()
 
     def exchange(self) -> None:
@@ -57,7 +58,7 @@ class FreeRunningSession(RobotSession):
 def _goes_on(session: FreeRunningSession) -> str | None:
     for _ in range(3):
         last = ticks(session)[-1].tick
-        if not session.listen(session.patience.react, partial(is_after, last)):
+        if not session.listen(session.waits.react, partial(is_after, last)):
             return f"no tick comes after {last}, though it is to wait for nobody"
     return None
 
@@ -74,7 +75,7 @@ def _rate(session: FreeRunningSession) -> float:
     """Ticks a second, over half as long as a reaction may take."""
     began, first = _next_tick(session)
     session.send(session.command(first))  # a robot may give up a silent station
-    session.listen(session.patience.react / 2, lambda _: False)
+    session.listen(session.waits.react / 2, lambda _: False)
     ended, last = _next_tick(session)
     return (last - first) / (ended - began)
 
@@ -83,7 +84,7 @@ def _next_tick(session: FreeRunningSession) -> tuple[float, int]:
     """When the next one came that had to be waited for: what had piled up tells no time."""
     for _ in range(MOST_PILED_UP):
         asked = time.monotonic()
-        if session.listen(session.patience.react, is_tick) is None:
+        if session.listen(session.waits.react, is_tick) is None:
             raise NoReactionError("no tick comes any more")
         if time.monotonic() - asked > AT_ONCE:
             break
@@ -120,6 +121,7 @@ ITEMS: list[Item[FreeRunningSession]] = [
     Item("ticks", "a command that is older than the newest is not followed", _earlier),
     NOT_MEANT,
     NOT_FINITE,
+    SETTINGS,
     *SERVICES,
     *SIGNING,
     Item("ticks", "each tick comes once", _one_by_one),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from laglab_conformance.forge import Forged
-from laglab_conformance.report import Result, Verdict
+from laglab_conformance.report import Mark, Result
 from laglab_conformance.session import DoesNotApplyError, NoReactionError, Session
 
 SOON = 0.25
@@ -41,31 +41,31 @@ def carry_out(
 
     first, *others = items
     found = tried(first)
-    if found.verdict is Verdict.FAILED:
+    if found.mark is Mark.FAILED:
         return found, *(_not_tried(item) for item in others)
     return found, *map(tried, others)
 
 
 def _not_tried(item: Item[AnySession]) -> Result:
     reason = "not tried: the peer was not found"
-    return Result(item.group, item.name, item.mandatory, Verdict.SKIPPED, reason, 0.0)
+    return Result(item.group, item.name, item.mandatory, Mark.SKIPPED, reason, 0.0)
 
 
 def _result(item: Item[AnySession], session: AnySession) -> Result:
     started, ended = time.monotonic(), session.ended
-    verdict, reason = Verdict.PASSED, ""
+    mark, reason = Mark.PASSED, ""
     try:
         wrong = item.check(session)
         if wrong is not None:
-            verdict, reason = Verdict.FAILED, wrong
+            mark, reason = Mark.FAILED, wrong
     except NoReactionError as error:
-        verdict, reason = Verdict.FAILED, str(error)
+        mark, reason = Mark.FAILED, str(error)
     except DoesNotApplyError as error:
-        verdict, reason = Verdict.SKIPPED, str(error)
-    if verdict is Verdict.FAILED and ended:
+        mark, reason = Mark.SKIPPED, str(error)
+    if mark is Mark.FAILED and ended:
         reason += f" (its run had ended at tick {ended.tick}: let it run longer)"
     seconds = time.monotonic() - started
-    return Result(item.group, item.name, item.mandatory, verdict, reason, seconds)
+    return Result(item.group, item.name, item.mandatory, mark, reason, seconds)
 
 
 def reacts_soon(session: Session) -> str | None:
@@ -87,7 +87,7 @@ def accepted(mangle: Mangle) -> Callable[[Session], str | None]:
 
     def check(session: Session) -> str | None:
         session.endpoint.send(mangle(session, session.forged()))
-        if session.reacts(session.patience.react):
+        if session.reacts(session.waits.react):
             return None
         session.exchange()
         return "it was not taken"

@@ -9,6 +9,7 @@ from laglab_conformance.robot import (
     ENDS,
     NOT_FINITE,
     NOT_MEANT,
+    SETTINGS,
     STAMPED,
     Batch,
     RobotSession,
@@ -34,7 +35,7 @@ class LockstepSession(RobotSession):
 def _repeats(session: LockstepSession) -> str | None:
     """Two more of the same, while nobody answers; each whole."""
     for _ in range(2):
-        frame = session.listen(session.patience.react, is_tick)
+        frame = session.listen(session.waits.react, is_tick)
         if frame is None:
             return f"tick {session.tick} is not repeated"
         assert isinstance(frame.message, Tick)
@@ -102,6 +103,7 @@ ITEMS: list[Item[LockstepSession]] = [
     NOT_MEANT,
     NOT_FINITE,
     Item("timing", f"it goes on within {SOON} s", reacts_soon),
+    SETTINGS,
     *SERVICES,
     *SIGNING,
     Item("lock-step", "a repeat brings the same messages", _repeats_the_same),

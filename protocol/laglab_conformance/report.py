@@ -5,7 +5,7 @@ from typing import NamedTuple
 from xml.etree import ElementTree
 
 
-class Verdict(Enum):
+class Mark(Enum):
     """Of one item."""
 
     PASSED = "passed"
@@ -19,7 +19,7 @@ class Result(NamedTuple):
     group: str
     name: str
     mandatory: bool
-    verdict: Verdict
+    mark: Mark
     reason: str
     seconds: float
 
@@ -33,19 +33,19 @@ class Report(NamedTuple):
     @property
     def conforms(self) -> bool:
         """Whether every mandatory item was passed or did not apply."""
-        return not any(each.mandatory and each.verdict is Verdict.FAILED for each in self.results)
+        return not any(each.mandatory and each.mark is Mark.FAILED for each in self.results)
 
     @property
     def failed(self) -> list[str]:
         """The names of the items that were not passed."""
-        return [each.name for each in self.results if each.verdict is Verdict.FAILED]
+        return [each.name for each in self.results if each.mark is Mark.FAILED]
 
     def table(self) -> str:
         """For a person: a line an item, and the verdict."""
         width = max((len(each.name) for each in self.results), default=0)
         lines = [
             f"{each.group:10} {each.name:{width}}  "
-            f"{'mandatory' if each.mandatory else 'optional':9}  {each.verdict.value}"
+            f"{'mandatory' if each.mandatory else 'optional':9}  {each.mark.value}"
             + (f": {each.reason}" if each.reason else "")
             for each in self.results
         ]
@@ -68,11 +68,11 @@ class Report(NamedTuple):
                 name=each.name,
                 time=f"{each.seconds:.3f}",
             )
-            if each.verdict is not Verdict.PASSED:
+            if each.mark is not Mark.PASSED:
                 tag = "failure" if _counts(each) else "skipped"
                 ElementTree.SubElement(case, tag, message=each.reason)
         return ElementTree.tostring(suite, encoding="unicode", xml_declaration=True)
 
 
 def _counts(result: Result) -> bool:
-    return result.mandatory and result.verdict is Verdict.FAILED
+    return result.mandatory and result.mark is Mark.FAILED

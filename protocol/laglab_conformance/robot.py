@@ -1,5 +1,6 @@
 """What the kit does with any robot: we are its station, and no item makes it move."""
 
+import math
 import time
 
 from msgspec.structs import replace
@@ -19,6 +20,7 @@ from laglab_protocol.messages.loop import (
     End,
     EndReason,
     Measurement,
+    Settings,
     Tick,
 )
 from laglab_protocol.messages.standard import STATION_HEARTBEAT, CommandAck, CommandLong
@@ -37,10 +39,10 @@ class RobotSession(Session):
     tick = 0
 
     def connect(self) -> None:
-        deadline = time.monotonic() + self.patience.appear
+        deadline = time.monotonic() + self.waits.appear
         while time.monotonic() < deadline:
             self.send(STATION_HEARTBEAT)
-            if frame := self.listen(self.patience.refuse, is_tick):
+            if frame := self.listen(self.waits.refuse, is_tick):
                 assert isinstance(frame.message, Tick)
                 self.tick = frame.message.tick
                 return
@@ -59,7 +61,7 @@ class RobotSession(Session):
     def ask(self, question: Message, answer: type[Message]) -> Frame:
         """The first answer of this kind. Raises NoReactionError."""
         self.send(question)
-        found = self.listen(self.patience.react, lambda frame: isinstance(frame.message, answer))
+        found = self.listen(self.waits.react, lambda frame: isinstance(frame.message, answer))
         if found is None:
             raise NoReactionError(f"no {answer.__name__} after {type(question).__name__}")
         return found
@@ -140,7 +142,7 @@ def _ends(session: RobotSession) -> str | None:
     """It answers END with the same reason."""
     end = End(session.tick, EndReason.INTERRUPTED)
     session.send(end)
-    answer = session.listen(session.patience.react, lambda frame: isinstance(frame.message, End))
+    answer = session.listen(session.waits.react, lambda frame: isinstance(frame.message, End))
     if answer is None:
         return "END is not answered"
     assert isinstance(answer.message, End)
@@ -156,6 +158,13 @@ def _for_another(session: Session, _: Forged) -> bytes:
     return session.forged(other).raw
 
 
+def _settings(session: RobotSession) -> str | None:
+    """It answers LAGLAB_SETTINGS with its own."""
+    told = session.ask(Settings(math.nan), Settings).message
+    assert isinstance(told, Settings)
+    return None if told.sample_time > 0 else f"its sample time is {told.sample_time}"
+
+
 BEGINS = Item("ticks", "it begins when a station is heard", _begins)
 NOT_FINITE = Item("ticks", "it survives a command that is not finite", _not_finite)
 NOT_MEANT = Item("ticks", "a command for another robot is not followed", refused(_for_another))
@@ -163,4 +172,5 @@ STAMPED = [
     Item("ticks", "the tick counts its measurements", _counts),
     Item("ticks", "measurements tell the command in force", _echoes),
 ]
+SETTINGS = Item("ticks", "it tells its settings", _settings, mandatory=False)
 ENDS = Item("ticks", "it answers END", _ends)

@@ -24,7 +24,7 @@ def _reports(number: int, kind: type[Message]) -> Item[RobotSession]:
             return f"refused with MAV_RESULT {ack.result}"
         if any(isinstance(frame.message, kind) for frame in session.heard[before:]):
             return None  # it came together with the acknowledgement
-        if session.listen(session.patience.react, lambda frame: isinstance(frame.message, kind)):
+        if session.listen(session.waits.react, lambda frame: isinstance(frame.message, kind)):
             return None
         return f"accepted, but no {kind.__name__} came"
 
@@ -61,7 +61,7 @@ def _reads_parameters(session: RobotSession) -> str | None:
 def _answers_ping(session: RobotSession) -> str | None:
     session.send(Ping(123, 7, 0, 0))
     answer = Ping(123, 7, session.system, session.component)
-    found = session.listen(session.patience.react, lambda frame: frame.message == answer)
+    found = session.listen(session.waits.react, lambda frame: frame.message == answer)
     return None if found else "no answer"
 
 

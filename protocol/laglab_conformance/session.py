@@ -8,16 +8,16 @@ from typing import NamedTuple
 
 from laglab_conformance.forge import Forged
 from laglab_protocol.endpoints import Endpoint
-from laglab_protocol.endpoints.silence import Silence
 from laglab_protocol.framing.frame import Frame
 from laglab_protocol.framing.receiver import Receiver
+from laglab_protocol.listener import Listener
 from laglab_protocol.messages.base import Message
 from laglab_protocol.messages.loop import End
 from laglab_protocol.signing.keys import read_key
 from laglab_protocol.signing.signature import Signer, Verifier
 
 
-class Patience(NamedTuple):
+class Waits(NamedTuple):
     """Seconds: for the peer to appear, for a reaction that is due, for one that must not come
     (longer where reactions take longer)."""
 
@@ -41,9 +41,9 @@ class Session(ABC):
     component: int
     peer: tuple[int, int]
 
-    def __init__(self, endpoint: Endpoint, patience: Patience, key_file: Path | None) -> None:
+    def __init__(self, endpoint: Endpoint, waits: Waits, key_file: Path | None) -> None:
         self.endpoint = endpoint
-        self.patience = patience
+        self.waits = waits
         self.key = read_key(key_file) if key_file else None
         self.signer = Signer(self.key, (0, self.system, self.component)) if self.key else None
         self.receiver = Receiver(Verifier(self.key) if self.key else None)
@@ -52,12 +52,12 @@ class Session(ABC):
         """Bytes in no frame before the first frame: we may have come in the middle of one."""
         self._sequence = 0
         self._slowest = 0.0
-        self._silence = Silence(endpoint.datagrams)
+        self._listener = Listener(endpoint, self.receiver)
 
     @property
     def refusal(self) -> float:
         """After so many seconds no reaction will come any more: twice as long as any has taken."""
-        return max(self.patience.refuse, 2.0 * self._slowest)
+        return max(self.waits.refuse, 2.0 * self._slowest)
 
     @property
     def ended(self) -> End | None:
@@ -103,10 +103,7 @@ class Session(ABC):
         return None
 
     def _receive(self, seconds: float) -> list[Frame]:
-        data = self.endpoint.receive(seconds)
-        frames = self.receiver.receive(data)
-        if self._silence.after(data):
-            frames += self.receiver.end_datagram()
+        frames = self._listener.listen(seconds)
         if frames:
             self.endpoint.accept_peer()
             if not self.heard:
@@ -126,7 +123,7 @@ class Session(ABC):
     def exchange(self) -> None:
         """An ordinary stimulus and its reaction. Raises NoReactionError."""
         self.endpoint.send(self.forged().raw)
-        if not self.reacts(self.patience.react):
+        if not self.reacts(self.waits.react):
             raise NoReactionError(f"no reaction to {self.stimulus()}")
 
     def quiet(self) -> None:

@@ -1,7 +1,6 @@
 """The link: the dialect's messages, their frames, and the endpoints they travel between."""
 
-from laglab_protocol.endpoints import Endpoint, SerialPair, open_endpoint
-from laglab_protocol.endpoints.silence import Silence
+from laglab_protocol.endpoints import Address, Endpoint, Link, SerialPair, open_endpoint
 from laglab_protocol.errors import (
     BadUrlError,
     DialectError,
@@ -12,11 +11,13 @@ from laglab_protocol.errors import (
     NoSuchPortError,
     PortBusyError,
     ProtocolError,
+    SettingsError,
     UnsignedLinkError,
 )
-from laglab_protocol.framing.frame import Frame, Refusal
-from laglab_protocol.framing.receiver import Counters, Receiver
+from laglab_protocol.framing.frame import Frame, Refusal, decode
+from laglab_protocol.framing.receiver import Counters, Receiver, frames_in
 from laglab_protocol.framing.sender import Sender
+from laglab_protocol.listener import Listener
 from laglab_protocol.messages.base import Message
 from laglab_protocol.messages.loop import (
     NO_COMMAND,
@@ -25,11 +26,13 @@ from laglab_protocol.messages.loop import (
     STATION_COMPONENT,
     STATION_SYSTEM,
     UNANNOUNCED,
+    UNKNOWN_DELAY,
     Command,
     End,
     EndReason,
     Estimate,
     Measurement,
+    Settings,
     Tick,
     message_type,
 )
@@ -55,8 +58,11 @@ from laglab_protocol.messages.standard import (
     SystemTime,
     Timesync,
 )
+from laglab_protocol.restart import Restart
+from laglab_protocol.settings import differences, refuse_other_sample_time
 from laglab_protocol.signing.keys import Codec, make_key, read_key, refuse_open_door
 from laglab_protocol.signing.signature import EVERY_MESSAGE
+from laglab_protocol.timing import Durations, Quantiles
 from laglab_protocol.tlog import TlogError, read_tlog, tlog_record
 
 __all__ = [
@@ -68,6 +74,8 @@ __all__ = [
     "STATION_HEARTBEAT",
     "STATION_SYSTEM",
     "UNANNOUNCED",
+    "UNKNOWN_DELAY",
+    "Address",
     "Attitude",
     "AutopilotVersion",
     "BadUrlError",
@@ -78,6 +86,7 @@ __all__ = [
     "CommandLong",
     "Counters",
     "DialectError",
+    "Durations",
     "End",
     "EndReason",
     "Endpoint",
@@ -88,6 +97,8 @@ __all__ = [
     "Frame",
     "Heartbeat",
     "KeyFileError",
+    "Link",
+    "Listener",
     "LocalPositionNed",
     "Measurement",
     "Message",
@@ -102,11 +113,14 @@ __all__ = [
     "Ping",
     "PortBusyError",
     "ProtocolError",
+    "Quantiles",
     "Receiver",
     "Refusal",
+    "Restart",
     "Sender",
     "SerialPair",
-    "Silence",
+    "Settings",
+    "SettingsError",
     "Statustext",
     "SysStatus",
     "SystemTime",
@@ -114,11 +128,15 @@ __all__ = [
     "Timesync",
     "TlogError",
     "UnsignedLinkError",
+    "decode",
+    "differences",
+    "frames_in",
     "make_key",
     "message_type",
     "open_endpoint",
     "read_key",
     "read_tlog",
     "refuse_open_door",
+    "refuse_other_sample_time",
     "tlog_record",
 ]

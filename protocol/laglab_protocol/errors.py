@@ -33,6 +33,10 @@ class FarEndStalledError(EndpointError):
     """The far end no longer reads, and what waits for it fills the queue."""
 
 
+class SettingsError(ProtocolError):
+    """The two sides were told things that do not go together."""
+
+
 class KeyFileError(ProtocolError):
     """The signing key, or the timestamps kept with it, cannot be used."""
 

@@ -2,11 +2,22 @@
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import BinaryIO
 
 from laglab_protocol.errors import ProtocolError
-from laglab_protocol.framing.frame import Frame, decode
+from laglab_protocol.framing.frame import (
+    CRC_SIZE,
+    HEADER_SIZE,
+    SIGNATURE_SIZE,
+    SIGNED,
+    START,
+    Frame,
+    Refusal,
+    decode,
+)
 
 STAMP_SIZE = 8
+PIECE = 1 << 20
 
 
 class TlogError(ProtocolError):
@@ -19,18 +30,39 @@ def tlog_record(time_us: int, frame: bytes) -> bytes:
 
 
 def read_tlog(path: Path) -> Iterator[tuple[int, Frame]]:
-    """The frames of the log with their times [us]; a record cut short at the end is left out.
+    """The frames of the log with their times [us]; a record cut short at the end is left out, and
+    so are messages that the dialect does not have. The log may be of any length.
 
-    Raises TlogError where a record is no frame of the dialect.
+    Raises TlogError when it cannot be read, or where a record is no frame.
     """
-    data = Path(path).read_bytes()
-    position = 0
-    while position + STAMP_SIZE < len(data):
-        time_us = int.from_bytes(data[position : position + STAMP_SIZE], "big")
-        found = decode(data, position + STAMP_SIZE)
-        if not isinstance(found, Frame):
-            if found is found.INCOMPLETE:
+    try:
+        with Path(path).open("rb") as file:
+            yield from _records(file, str(path))
+    except OSError as error:
+        raise TlogError(f"{path} cannot be read: {error.strerror}") from error
+
+
+def _records(file: BinaryIO, name: str) -> Iterator[tuple[int, Frame]]:
+    buffer, before, position = b"", 0, 0
+    while True:
+        found = decode(buffer, position + STAMP_SIZE)
+        if found is Refusal.INCOMPLETE:
+            more = file.read(PIECE)
+            if not more:
                 return
-            raise TlogError(f"{path}: no frame of the dialect at byte {position + STAMP_SIZE}")
-        yield time_us, found
-        position += STAMP_SIZE + len(found.raw)
+            before, buffer, position = before + position, buffer[position:] + more, 0
+            continue
+        if isinstance(found, Frame):
+            yield int.from_bytes(buffer[position : position + STAMP_SIZE], "big"), found
+            position += STAMP_SIZE + len(found.raw)
+        elif found is Refusal.UNKNOWN and buffer[position + STAMP_SIZE] == START:
+            position += STAMP_SIZE + _size(buffer, position + STAMP_SIZE)
+        else:
+            at = before + position + STAMP_SIZE
+            raise TlogError(f"{name}: no frame of the dialect at byte {at}")
+
+
+def _size(buffer: bytes, start: int) -> int:
+    """Of a frame whose message is unknown, as its header tells."""
+    signature = SIGNATURE_SIZE if buffer[start + 2] & SIGNED else 0
+    return HEADER_SIZE + buffer[start + 1] + CRC_SIZE + signature

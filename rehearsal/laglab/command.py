@@ -18,10 +18,7 @@ from laglab.commands import (
     sides,
 )
 from laglab.errors import LaglabError, RunError, ScenarioError
-from laglab.run.processes import SIDE_ERRORS
-from laglab_gateway import RobotSilentError, StationSilentError
-from laglab_protocol import FarEndGoneError, FarEndStalledError
-from laglab_station import StationError
+from laglab.runs.errors import LINK_LOST, SIDE_ERRORS
 
 app = typer.Typer(
     help="A rehearsal rig for robots controlled across a network.",
@@ -43,15 +40,6 @@ app.add_typer(bench.app, name="bench")
 app.add_typer(fmu.app, name="fmu")
 app.add_typer(protocol.app, name="protocol")
 app.command("conform")(protocol.conform)
-
-LINK_LOST = (
-    StationError,
-    StationSilentError,
-    RobotSilentError,
-    FarEndGoneError,
-    FarEndStalledError,
-)
-"""What ends a run that had begun; the other errors of a side are the user's to mend."""
 
 
 def main(arguments: list[str] | None = None) -> None:

@@ -19,6 +19,24 @@ class MissingExtraError(LaglabError):
     exit_code = 2
 
 
+class ResultsError(LaglabError):
+    """What a run left cannot be read, or cannot be written; the text names the file."""
+
+    exit_code = 4
+
+
+class PlaceError(LaglabError):
+    """Results cannot go where they are to go; nothing has run yet."""
+
+    exit_code = 2
+
+
+class RefusedError(LaglabError):
+    """A side refused to begin; the text says why."""
+
+    exit_code = 2
+
+
 class RunError(LaglabError):
     """A run was cut short: a process or the link died."""
 

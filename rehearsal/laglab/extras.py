@@ -1,22 +1,31 @@
 """What not every machine has installed: each side alone needs less than the whole rig."""
 
+from enum import Enum
 from importlib.util import find_spec
 
 from laglab.errors import MissingExtraError
 
-STEPPING = "gateway"
-"""The extra that brings FMPy, which steps the robot."""
-REHEARSING = "run"
-"""The extra that brings all of it, matplotlib too."""
 
-MODULES = {STEPPING: ("fmpy",), REHEARSING: ("fmpy", "matplotlib")}
+class Need(Enum):
+    """What something needs: the extra that brings it, and the modules that are in it."""
+
+    STEPPING = "gateway", ("fmpy",)
+    DRAWING = "run", ("matplotlib",)
+    REHEARSING = "run", ("fmpy", "matplotlib")
+
+    def __init__(self, extra: str, modules: tuple[str, ...]) -> None:
+        self.extra = extra
+        self.modules = modules
 
 
-def require(extra: str) -> None:
-    """Raises MissingExtraError, with what to install, when something of the extra is missing."""
-    for module in MODULES[extra]:
+STEPPING, DRAWING, REHEARSING = Need
+
+
+def require(need: Need) -> None:
+    """Raises MissingExtraError, with what to install, when something that is needed is missing."""
+    for module in need.modules:
         if find_spec(module) is None:
             raise MissingExtraError(
-                f"{module} is not installed here: install laglab with the extra {extra!r}, "
-                f"as in pip install '.[{extra}]'"
+                f"{module} is not installed here: pip install 'laglab[{need.extra}]' brings it "
+                f"(in a clone of laglab, pip install '.[{need.extra}]')"
             )

@@ -10,7 +10,16 @@ from hypothesis import strategies as st
 from msgspec.structs import astuple
 
 from laglab_control import ESTIMATORS, StationConfig
-from laglab_protocol import Command, End, Measurement, Message, Receiver, Sender, Tick, Timesync
+from laglab_protocol import (
+    Command,
+    End,
+    Measurement,
+    Message,
+    Sender,
+    Tick,
+    Timesync,
+    frames_in,
+)
 from laglab_station import Station
 
 NUMBERS = st.floats() | st.floats(-10, 10)
@@ -31,7 +40,7 @@ MESSAGES = st.one_of(
 def test_no_message_of_the_robot_harms_the_station(estimator: str, said: list[Message]) -> None:
     station, robot = Station(StationConfig(estimator=estimator), clock=lambda: 0), Sender(1, 1)
     for message in said:
-        answered = Receiver().receive(station.receive(robot.frame(message), datagram=True))
+        answered = frames_in(b"".join(station.hear(frames_in(robot.frame(message)))))
         for frame in answered:
             if isinstance(frame.message, Command):
                 assert math.isfinite(frame.message.v)
@@ -44,15 +53,15 @@ def test_no_message_of_the_robot_harms_the_station(estimator: str, said: list[Me
 def test_a_robot_far_ahead_is_met_anew(estimator: str) -> None:
     """Nobody knows what it did meanwhile: it is told to stand still until its pose is known."""
     station, robot = Station(StationConfig(estimator=estimator)), Sender(1, 1)
-    station.receive(robot.frame(Tick(0, 0)), datagram=True)
-    (frame,) = Receiver().receive(station.receive(robot.frame(Tick(4 * 10**9, 0)), datagram=True))
+    station.hear(frames_in(robot.frame(Tick(0, 0))))
+    (frame,) = frames_in(b"".join(station.hear(frames_in(robot.frame(Tick(4 * 10**9, 0))))))
     assert astuple(frame.message)[:3] == (0.0, 0.0, 4 * 10**9)
 
 
 def test_measurements_without_a_tick_are_forgotten() -> None:
     station, robot = Station(StationConfig()), Sender(1, 1)
     for k in range(5000):
-        station.receive(robot.frame(Measurement(*np.zeros(5), k, -1)), datagram=True)
+        station.hear(frames_in(robot.frame(Measurement(*np.zeros(5), k, -1))))
     assert len(station._measurements) < 300
 
 
@@ -81,10 +90,10 @@ def test_looking_ahead_changes_no_answer(estimator: str) -> None:
     for k in (*range(80), *range(1200, 1400)):
         data = b"".join(map(robot.frame, messages_at(k, sent)))
         for _ in range(1 + (k % 11 == 0)):
-            answer = ahead.receive(data, datagram=True)
-            assert answer == without.receive(data, datagram=True)
+            answer = ahead.hear(frames_in(data))
+            assert answer == without.hear(frames_in(data))
             ahead.look_ahead()
-        *_, command = [frame.message for frame in Receiver().receive(answer)]
+        *_, command = [frame.message for frame in frames_in(b"".join(answer))]
         sent[k] = command
     assert ahead.tick == 1399
     assert ahead.outcome is None
@@ -95,15 +104,15 @@ def test_a_warning_is_not_lost_when_the_robot_is_met_anew() -> None:
     station, robot = Station(StationConfig(initial_covariance=np.eye(3) * 10)), Sender(1, 1)
     for k in range(6):
         late = [Measurement(*[0.0] * 5, 0, -1)] if k == 5 else []
-        station.receive(b"".join(map(robot.frame, [*late, Tick(k, len(late))])), datagram=True)
-    station.receive(robot.frame(Tick(2000, 0)), datagram=True)
-    assert "tick 5: popf's gain is" in str(station.warning)
+        station.hear(frames_in(b"".join(map(robot.frame, [*late, Tick(k, len(late))]))))
+    station.hear(frames_in(robot.frame(Tick(2000, 0))))
+    assert "tick 5: popf's gain is" in station.warnings[0]
 
 
 def test_nothing_heard_after_the_end_is_of_any_account() -> None:
     station, robot = Station(StationConfig()), Sender(1, 1)
     for message in (Tick(0, 0), Tick(1, 0), End(1, 0), Tick(5000, 0)):
-        station.receive(robot.frame(message), datagram=True)
+        station.hear(frames_in(robot.frame(message)))
     assert station.tick == 1
 
 
@@ -115,7 +124,7 @@ def test_waiting_for_measurements_that_do_not_come_costs_no_more_from_tick_to_ti
         late = [Measurement(*[0.0] * 5, k - 5, -1)] if 5 <= k < 100 else []
         data = b"".join(map(robot.frame, [*late, Tick(k, len(late))]))
         with cProfile.Profile() as profile:
-            station.receive(data, datagram=True)
+            station.hear(frames_in(data))
             station.look_ahead()
         calls.append(sum(entry.callcount for entry in profile.getstats()))
     assert max(calls[110:]) <= max(calls[50:100])

@@ -13,6 +13,7 @@ from laglab_protocol import (
     STATION_SYSTEM,
     Codec,
     Endpoint,
+    Listener,
     make_key,
     open_endpoint,
 )
@@ -46,4 +47,5 @@ def test_our_controller_conforms(tmp_path: Path, line: str, signed: bool) -> Non
 
 def run(endpoint: Endpoint, key_file: Path | None) -> None:
     with Codec(STATION_SYSTEM, STATION_COMPONENT, key_file) as codec:
-        run_station(Station(StationConfig(estimator="delayed-ekf"), codec=codec), endpoint)
+        station = Station(StationConfig(estimator="delayed-ekf"), sender=codec.sender)
+        run_station(station, Listener(endpoint, codec.receiver))

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from laglab_control import Drive, Law
+from laglab_control import Demand, Law
 
 coordinate = st.floats(-10, 10)
 poses = st.tuples(coordinate, coordinate, coordinate).map(np.array)
@@ -31,7 +31,7 @@ def test_straight_ahead_the_sinc_is_1():
 def test_limits_clamp_and_nothing_else_changes(pose, at_goal):
     free = Law().drive(pose, at_goal)
     limited = Law(v_max=1.0, omega_max=1.7).drive(pose, at_goal)
-    assert limited == Drive(
+    assert limited == Demand(
         min(max(free.v, -1.0), 1.0), min(max(free.omega, -1.7), 1.7), free.at_goal
     )
 

@@ -11,13 +11,14 @@ from laglab_protocol import (
     Command,
     End,
     EndReason,
+    Listener,
     Measurement,
     Receiver,
     Sender,
     Tick,
     open_endpoint,
 )
-from laglab_station import RobotSilentError, Station, run_station
+from laglab_station import Onlooker, RobotSilentError, Station, run_station
 
 
 @pytest.fixture
@@ -47,9 +48,18 @@ def drive(endpoint, *messages):
     return heard
 
 
+class Warned(Onlooker):
+    def __init__(self):
+        self.warnings = []
+
+    def warned(self, text):
+        self.warnings.append(text)
+
+
 def run(endpoint, results, **options):
+    listener = Listener(endpoint, Receiver())
     try:
-        results.append(run_station(Station(StationConfig()), endpoint, **options))
+        results.append(run_station(Station(StationConfig()), listener, **options))
     except RobotSilentError as error:
         results.append(error)
 
@@ -68,16 +78,16 @@ def test_it_makes_itself_known_answers_and_ends(link):
 def test_a_warning_is_passed_on_once(link):
     robot, endpoint = link
     config = StationConfig(estimator="popf", initial_covariance=np.eye(3))
-    warnings = []
-    thread = threading.Thread(
-        target=run_station, args=(Station(config), endpoint, 3.0, warnings.append)
-    )
+    onlooker = Warned()
+    listener = Listener(endpoint, Receiver())
+    thread = threading.Thread(target=run_station, args=(Station(config), listener, 3.0, onlooker))
     thread.start()
     measured = [Measurement(0.0, 0.0, 0.0, 0.0, 0.0, 0, -1), Tick(5, 1)]
     drive(robot, Tick(0, 0), measured, Tick(6, 0), End(6, EndReason.COMPLETED))
     thread.join(5)
-    (warning,) = warnings
-    assert warning.startswith("tick 5: popf's gain is")
+    no_settings, gain = onlooker.warnings
+    assert no_settings == "the robot does not tell its settings"
+    assert gain.startswith("tick 5: popf's gain is")
 
 
 def test_a_robot_that_falls_silent_is_named_with_its_last_tick(link):

@@ -15,6 +15,7 @@ from laglab_protocol import (
     Receiver,
     Sender,
     Tick,
+    frames_in,
 )
 from laglab_station import Station
 
@@ -47,7 +48,7 @@ class Robot:
         return b"".join(map(self._sender.frame, [*messages, Tick(tick, count)]))
 
     def say(self, data):
-        answer = self.station.receive(data, datagram=True)
+        answer = b"".join(self.station.hear(frames_in(data)))
         return [frame.message for frame in self._receiver.receive(answer)]
 
     def tick(self, tick, *poses):
@@ -185,7 +186,7 @@ def test_the_robots_end_is_answered_once_with_the_same():
 
 
 def test_heartbeat_says_ground_station():
-    (frame,) = Receiver().receive(make().heartbeat())
+    (frame,) = frames_in(make().heartbeat()[0])
     assert isinstance(frame.message, Heartbeat)
     assert (frame.system, frame.component, frame.message.type) == (200, 190, 6)
 

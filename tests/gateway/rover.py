@@ -8,23 +8,22 @@ import time
 
 import numpy as np
 
-from laglab.run.inline import InlineEndpoint
-from laglab.run.plant import FmuPlant
+from laglab.runs.inline import InlineLink
+from laglab.runs.plant import FmuPlant
 from laglab_control import Law, RobotModel, StationConfig
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
     Gateway,
     GatewayConfig,
-    NoRecorder,
-    Patience,
     Safety,
     Services,
+    Surroundings,
     Watch,
     Watcher,
     serve_lockstep,
     standard_parameters,
 )
-from laglab_protocol import ROBOT_COMPONENT, ROBOT_SYSTEM, Receiver, Sender, open_endpoint
+from laglab_protocol import ROBOT_COMPONENT, ROBOT_SYSTEM, Listener, Receiver, Sender, open_endpoint
 from laglab_station import Station
 
 START = (-3.0, -2.0, 0.0)
@@ -63,9 +62,10 @@ def main(url: str) -> None:
     config = GatewayConfig(0, 0, FOREVER, PARAMETERS.sample_time)
     with Robot.open(3, PARAMETERS) as robot, open_endpoint(url) as endpoint:
         gateway = Gateway(FmuPlant(robot, PARAMETERS), config, services=services)
-        watcher = Watcher(endpoint, Sender(ROBOT_SYSTEM, ROBOT_COMPONENT), Receiver())
-        watch, link = Watch(services, [watcher]), InlineEndpoint(station())
-        serve_lockstep(gateway, link, NoRecorder(), Patience(), progress=_breathe, watch=watch)
+        sender = Sender(ROBOT_SYSTEM, ROBOT_COMPONENT)
+        watch = Watch(services, [Watcher(Listener(endpoint, Receiver()), sender)])
+        listener = Listener(InlineLink(station(), Receiver()), Receiver())
+        serve_lockstep(gateway, Surroundings(listener, watch=watch, progress=_breathe))
 
 
 if __name__ == "__main__":

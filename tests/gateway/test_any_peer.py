@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from laglab.run.plant import FmuPlant
+from laglab.runs.plant import FmuPlant
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import Gateway, GatewayConfig, Relay, Services, standard_parameters
 from laglab_protocol import (
@@ -23,6 +23,7 @@ from laglab_protocol import (
     Receiver,
     Sender,
     Tick,
+    frames_in,
 )
 from laglab_protocol.messages.layout import LAYOUT_OF_ID, Layout
 
@@ -69,8 +70,8 @@ def test_no_message_of_a_station_harms_the_robots_side(robot: Robot, said: list[
     for message in said:
         gateway.open_tick()
         gateway.settle()
-        gateway.receive(station.frame(message), whole=True)
-        gateway.take_replies()
+        gateway.hear(frames_in(station.frame(message)))
+        gateway.take_notices()
         row = gateway.close_tick()
         assert math.isfinite(row.x or 0.0)
         if gateway.outcome is not None:
@@ -84,16 +85,16 @@ def test_no_message_of_either_side_harms_the_relay(said: list[Message]) -> None:
     robot = Sender(ROBOT_SYSTEM, ROBOT_COMPONENT)
     station = Sender(STATION_SYSTEM, STATION_COMPONENT)
     for message in said:
-        relay.receive(station.frame(message), whole=True)
-        for frame in relay.receive_from_robot(robot.frame(message), whole=True):
-            if relay.hear(frame):
+        relay.hear(frames_in(station.frame(message)))
+        for frame in frames_in(robot.frame(message)):
+            if relay.hear_robot(frame):
                 if relay.under_way:
                     relay.close_tick()
                 relay.open_tick()
         for frame in Receiver().receive(b"".join(relay.forward())):
             assert isinstance(frame.message, Command)
             assert all(map(math.isfinite, frame.message.speeds))
-        relay.take_replies()
+        relay.take_notices()
 
 
 def test_what_no_tick_closes_does_not_pile_up(robot: Robot) -> None:
@@ -102,9 +103,9 @@ def test_what_no_tick_closes_does_not_pile_up(robot: Robot) -> None:
     relay = Relay(CONFIG, Services(standard_parameters(2, 3, CONFIG.safety), placeable=False))
     for _ in range(5000):
         frame = Sender(STATION_SYSTEM, STATION_COMPONENT).frame(Estimate(*[0.0] * 9, tick=0))
-        gateway.receive(frame, whole=True)
+        gateway.hear(frames_in(frame))
         frame = Sender(ROBOT_SYSTEM, ROBOT_COMPONENT).frame(Measurement(*[0.0] * 5, 0, -1))
-        for each in relay.receive_from_robot(frame, whole=True):
-            relay.hear(each)
+        for each in frames_in(frame):
+            relay.hear_robot(each)
     assert len(gateway._estimates) < 300
     assert len(relay._samples) < 300

@@ -8,19 +8,27 @@ from typing import Any
 
 import pytest
 
-from laglab.run.plant import FmuPlant
+from laglab.runs.plant import FmuPlant
 from laglab_conformance import Pace, conform
-from laglab_conformance import Patience as Quick
+from laglab_conformance import Waits as Quick
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
     Gateway,
     GatewayConfig,
-    NoRecorder,
     Patience,
+    Surroundings,
     serve_lockstep,
     serve_realtime,
 )
-from laglab_protocol import ROBOT_COMPONENT, ROBOT_SYSTEM, Codec, Endpoint, make_key, open_endpoint
+from laglab_protocol import (
+    ROBOT_COMPONENT,
+    ROBOT_SYSTEM,
+    Codec,
+    Endpoint,
+    Listener,
+    make_key,
+    open_endpoint,
+)
 
 PARAMETERS = RobotParameters(start=(-3.0, -2.0, 0.0), noise=True)
 
@@ -37,16 +45,13 @@ def serve(endpoint: Endpoint, key_file: Path | None, pace: Pace, ticks: int = 10
         Robot.open(3, PARAMETERS) as robot,
         Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, key_file) as codec,
     ):
-        gateway = Gateway(FmuPlant(robot, PARAMETERS), config, codec=codec)
-        talk = gateway, endpoint, NoRecorder(), Patience(0.05, 3.0, 5.0), ignore
+        gateway = Gateway(FmuPlant(robot, PARAMETERS), config, sender=codec.sender)
+        patience = Patience(0.05, 3.0, 5.0)
+        around = Surroundings(Listener(endpoint, codec.receiver), patience=patience)
         if pace == "lockstep":
-            serve_lockstep(*talk)
+            serve_lockstep(gateway, around)
         else:
-            serve_realtime(*talk, PARAMETERS.sample_time)
-
-
-def ignore(_: int) -> None:
-    """Of the progress."""
+            serve_realtime(gateway, around, PARAMETERS.sample_time)
 
 
 @contextmanager

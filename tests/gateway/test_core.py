@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from laglab.run.plant import FmuPlant
+from laglab.runs.plant import FmuPlant
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import Gateway, GatewayConfig, Outcome
 from laglab_protocol import (
@@ -25,6 +25,7 @@ from laglab_protocol import (
     Receiver,
     Sender,
     Tick,
+    frames_in,
 )
 
 PARAMETERS = RobotParameters(start=(-3.0, -3.0, 0.0), noise=True, seed=5)
@@ -83,7 +84,7 @@ def test_both_delays_are_exact(robot: Robot, n: int, m: int) -> None:
                 assert z.pose == (sample.x_meas, sample.y_meas, sample.theta_meas)
             if s:
                 assert (z.v, z.omega) == (rows[s - 1].v, rows[s - 1].omega)
-        gateway.receive(station.say(command(k, v=0.1 + k)), whole=True)
+        gateway.hear(frames_in(station.say(command(k, v=0.1 + k))))
         gateway.settle()
         rows.append(gateway.close_tick())
     assert gateway.outcome == Outcome(EndReason.COMPLETED, LAST_TICK)
@@ -102,13 +103,13 @@ def test_a_repeated_tick_brings_the_same_messages_in_new_frames(robot: Robot) ->
 def test_only_the_stations_command_for_this_tick_answers_it(robot: Robot) -> None:
     gateway, station = gateway_of(robot, 0, 0), Station()
     gateway.open_tick()
-    gateway.receive(station.say(command(7)), whole=True)
-    gateway.receive(Station(system=42).say(command(0)), whole=True)
-    gateway.receive(station.say(replace(command(0), target_system=2)), whole=True)
-    gateway.receive(station.say(replace(command(0), target_component=2)), whole=True)
-    gateway.receive(b"\xfd\x12 no frame at all", whole=True)
+    gateway.hear(frames_in(station.say(command(7))))
+    gateway.hear(frames_in(Station(system=42).say(command(0))))
+    gateway.hear(frames_in(station.say(replace(command(0), target_system=2))))
+    gateway.hear(frames_in(station.say(replace(command(0), target_component=2))))
+    gateway.hear(frames_in(b"\xfd\x12 no frame at all"))
     assert not gateway.answered
-    gateway.receive(station.say(command(0)), whole=True)
+    gateway.hear(frames_in(station.say(command(0))))
     assert gateway.answered
 
 
@@ -116,9 +117,9 @@ def test_an_answer_that_lost_its_estimate_waits_for_the_repeat(robot: Robot) -> 
     gateway, station = gateway_of(robot, 0, 0), Station()
     gateway.open_tick()
     estimate = Estimate(1.0, 2.0, 3.0, *[0.0] * 6, 0)
-    gateway.receive(station.say(command(0, estimates=1)), whole=False)
+    gateway.hear(frames_in(station.say(command(0, estimates=1))))
     assert not gateway.answered
-    gateway.receive(station.say(estimate, command(0, estimates=1)), whole=False)
+    gateway.hear(frames_in(station.say(estimate, command(0, estimates=1))))
     assert gateway.answered
     gateway.settle()
     assert gateway.close_tick()[8:11] == (1.0, 2.0, 3.0)
@@ -128,7 +129,7 @@ def test_the_last_tick_is_not_stepped(robot: Robot) -> None:
     gateway, station = gateway_of(robot, 0, 0, last_tick=0), Station()
     before = robot.read()
     gateway.open_tick()
-    gateway.receive(station.say(command(0, v=1.0)), whole=True)
+    gateway.hear(frames_in(station.say(command(0, v=1.0))))
     gateway.close_tick()
     assert gateway.outcome == Outcome(EndReason.COMPLETED, 0)
     assert robot.read() == before
@@ -137,7 +138,7 @@ def test_the_last_tick_is_not_stepped(robot: Robot) -> None:
 def test_the_stations_end_ends_the_run_at_this_tick(robot: Robot) -> None:
     gateway, station = gateway_of(robot, 0, 0), Station()
     gateway.open_tick()
-    gateway.receive(station.say(End(0, EndReason.DIVERGED), command(0)), whole=True)
+    gateway.hear(frames_in(station.say(End(0, EndReason.DIVERGED), command(0))))
     gateway.close_tick()
     assert gateway.outcome == Outcome(EndReason.DIVERGED, 0)
 
@@ -146,8 +147,8 @@ def test_the_stations_end_ends_the_run_at_this_tick(robot: Robot) -> None:
 def test_a_command_that_is_not_finite_moves_nothing(robot: Robot, value: float) -> None:
     gateway, station = gateway_of(robot, 0, 0), Station()
     gateway.open_tick()
-    gateway.receive(station.say(command(0, v=value)), whole=True)
+    gateway.hear(frames_in(station.say(command(0, v=value))))
     gateway.settle()
     row = gateway.close_tick()
     assert (row.v, row.omega) == (0.0, 0.0)
-    assert gateway.audit.report()["refused"] == {"not finite": 1}
+    assert gateway.audit.report().refused == {"not finite": 1}

@@ -4,7 +4,16 @@ from itertools import pairwise
 
 import pytest
 
-from laglab_gateway.drive import Drive, Mode, Refusal, Safety, follow, refusal, speeds, supervise
+from laglab_gateway.drive import (
+    Drive,
+    Mode,
+    Rejection,
+    Safety,
+    follow,
+    rejection,
+    speeds,
+    supervise,
+)
 from laglab_protocol import Command
 
 TS = 0.01
@@ -18,23 +27,23 @@ def command(tick: int, v: float = 1.0, omega: float = -0.5) -> Command:
 @pytest.mark.parametrize(
     ("bad", "why"),
     [
-        (command(9, v=float("nan")), Refusal.NOT_FINITE),
-        (command(9, omega=float("inf")), Refusal.NOT_FINITE),
-        (command(9, v=2.1), Refusal.OUT_OF_LIMITS),
-        (command(9, omega=-3.1), Refusal.OUT_OF_LIMITS),
-        (command(7), Refusal.STALE),
-        (command(8), Refusal.STALE),
+        (command(9, v=float("nan")), Rejection.NOT_FINITE),
+        (command(9, omega=float("inf")), Rejection.NOT_FINITE),
+        (command(9, v=2.1), Rejection.OUT_OF_LIMITS),
+        (command(9, omega=-3.1), Rejection.OUT_OF_LIMITS),
+        (command(7), Rejection.STALE),
+        (command(8), Rejection.STALE),
         (command(9), None),
     ],
 )
-def test_what_is_refused(bad: Command, why: Refusal | None) -> None:
-    assert refusal(follow(command(8), tick=10), bad, SAFETY) is why
+def test_what_is_refused(bad: Command, why: Rejection | None) -> None:
+    assert rejection(follow(command(8), tick=10), bad, SAFETY) is why
 
 
 @pytest.mark.parametrize("speed", ["v", "omega"])
 def test_without_limits_too_nothing_drives_so_fast_that_the_wheels_overflow(speed: str) -> None:
-    assert refusal(Drive(), command(0, **{speed: 1e5}), Safety()) is None
-    assert refusal(Drive(), command(0, **{speed: 3e307}), Safety()) is Refusal.OUT_OF_LIMITS
+    assert rejection(Drive(), command(0, **{speed: 1e5}), Safety()) is None
+    assert rejection(Drive(), command(0, **{speed: 3e307}), Safety()) is Rejection.OUT_OF_LIMITS
 
 
 def test_it_stands_still_until_the_first_command() -> None:
@@ -57,6 +66,6 @@ def test_without_fresh_commands_it_ramps_to_a_stop() -> None:
 
 def test_only_a_fresh_command_moves_it_again() -> None:
     drive = supervise(follow(command(8), tick=10), 60, TS, SAFETY)
-    assert refusal(drive, command(8), SAFETY) is Refusal.STALE
+    assert rejection(drive, command(8), SAFETY) is Rejection.STALE
     drive = follow(command(55), tick=65)
     assert (drive.mode, speeds(drive, 65, TS, SAFETY)) == (Mode.DRIVING, (1.0, -0.5))

@@ -12,18 +12,18 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from laglab.run.plant import FmuPlant
+from laglab.runs.plant import FmuPlant
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
     Gateway,
     GatewayConfig,
-    NoRecorder,
     Outcome,
     Patience,
+    PlantSilentError,
     Relay,
-    RobotSilentError,
     Safety,
     Services,
+    Surroundings,
     Trace,
     read_trace,
     serve_realtime,
@@ -37,6 +37,7 @@ from laglab_protocol import (
     End,
     EndReason,
     Heartbeat,
+    Listener,
     Measurement,
     Receiver,
     Sender,
@@ -92,11 +93,11 @@ def is_driving(trace: Trace) -> bool:
 
 
 def ended(process: Process, code: int) -> str:
-    """Its standard error, once it has ended as it should."""
-    _, errors = process.communicate(timeout=20)
+    """What it said, once it has ended as it should."""
+    output, errors = process.communicate(timeout=20)
     assert process.returncode == code, errors
     assert "Traceback" not in errors
-    return str(errors)
+    return str(output + errors)
 
 
 def assert_robot_let_go(robot: Process) -> None:
@@ -107,7 +108,7 @@ def test_the_same_controller_stabilises_a_real_robot(
     rig: Callable[..., Rig], tmp_path: Path
 ) -> None:
     gateway, station, robot = rig("--duration", "15", speed=UNHURRIED)
-    assert "completed at tick 1500" in ended(gateway, 0)
+    assert "1500 ticks in" in ended(gateway, 0)
     ended(station, 0)
     assert_robot_let_go(robot)
     assert not (tmp_path / "port").is_symlink()
@@ -175,7 +176,7 @@ def test_a_dead_robot_is_named_by_its_link_and_the_station_is_told(
     assert time.monotonic() - killed < 4
     last = int(read_trace(tmp_path / "run" / "trace.csv")["tick"][-1]) + 1
     assert f"pty://{tmp_path}/port: the robot has been silent since its tick {last}" in errors
-    assert ended(station, 1)
+    assert "the other side failed" in ended(station, 4)
 
 
 def test_a_dead_station_lets_the_robot_stop_by_its_own_failsafe(
@@ -206,9 +207,8 @@ def gateway_as_robot() -> Iterator[tuple[str, "Future[Outcome]"]]:
         with Robot.open(3, parameters) as robot:
             gateway = Gateway(FmuPlant(robot, parameters), config)
             patience = Patience(silence=10.0, connect=20.0)
-            recorder, period = NoRecorder(), parameters.sample_time
-            served = serve_realtime(gateway, endpoint, recorder, patience, lambda _: None, period)
-            return served[0]
+            around = Surroundings(Listener(endpoint, Receiver()), patience=patience)
+            return serve_realtime(gateway, around, parameters.sample_time).outcome
 
     with open_endpoint("udpin://127.0.0.1:0") as endpoint, ThreadPoolExecutor(1) as thread:
         yield endpoint.name.replace("udpin", "udpout"), thread.submit(drive)
@@ -243,10 +243,10 @@ def test_a_robot_that_never_speaks_is_named(tmp_path: Path) -> None:
         open_endpoint(endpoint.name.replace("udpin", "udpout")) as station,
     ):
         station.send(Sender(STATION_SYSTEM, STATION_COMPONENT).frame(Heartbeat(0, 6, 8, 0, 4, 3)))
-        with pytest.raises(RobotSilentError, match="the robot never spoke") as silent:
-            serve_remote(
-                relay, robot, endpoint, NoRecorder(), Patience(silence=0.9), lambda _: None
-            )
+        patience = Patience(silence=0.9)
+        around = Surroundings(Listener(endpoint, Receiver()), patience=patience)
+        with pytest.raises(PlantSilentError, match="the robot never spoke") as silent:
+            serve_remote(relay, robot, around)
         assert link in str(silent.value)
         heard = Receiver().receive(station.receive(0.1))
         assert End(0, EndReason.FAILED) in [frame.message for frame in heard]

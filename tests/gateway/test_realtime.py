@@ -5,14 +5,16 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from laglab_fmu import Reading
 from laglab_gateway import (
     Gateway,
     GatewayConfig,
-    NoRecorder,
     Outcome,
     Patience,
+    Reading,
+    Recorder,
     StationSilentError,
+    Surroundings,
+    TimingReport,
     TraceRow,
     serve_realtime,
 )
@@ -26,6 +28,7 @@ from laglab_protocol import (
     End,
     EndReason,
     Heartbeat,
+    Listener,
     Message,
     Receiver,
     Sender,
@@ -49,7 +52,9 @@ class StillPlant:
 class SimulatedLink:
     """A clock that only moves while somebody waits, and a station that takes its time to answer."""
 
+    name = "simulated"
     datagrams = True
+    sender = peer = None
 
     def __init__(self, answer_time: Callable[[int], float], oversleep: Callable[[], float]) -> None:
         self.time = 1000.0
@@ -63,7 +68,12 @@ class SimulatedLink:
     def now(self) -> float:
         return self.time
 
-    def send(self, data: bytes) -> None:
+    def fileno(self) -> int:
+        return -1
+
+    def reopen(self) -> None: ...
+
+    def send(self, data: bytes, _: object = None) -> None:
         for frame in self._receiver.receive(data):
             match frame.message:
                 case Tick(tick=tick):
@@ -86,7 +96,7 @@ class SimulatedLink:
     def accept_peer(self) -> None: ...
 
 
-class Kept(NoRecorder):
+class Kept(Recorder):
     def __init__(self) -> None:
         self.rows: list[TraceRow] = []
         self.timings: list[TimingRow] = []
@@ -100,12 +110,13 @@ class Kept(NoRecorder):
 
 def run(
     link: SimulatedLink, n: int, last_tick: int, silence: float = 3.0
-) -> tuple[Gateway, Kept, Outcome, dict[str, float]]:
+) -> tuple[Gateway, Kept, Outcome, TimingReport]:
     gateway, kept = Gateway(StillPlant(), GatewayConfig(n, 0, last_tick, 0.01)), Kept()
-    outcome, lateness = serve_realtime(
-        gateway, link, kept, Patience(silence=silence), lambda _: None, PERIOD, link.now
-    )
-    return gateway, kept, outcome, lateness.report()
+    listener = Listener(link, Receiver(), link.now)
+    around = Surroundings(listener, kept, Patience(silence=silence), now=link.now)
+    outcome, _, timing = serve_realtime(gateway, around, PERIOD)
+    assert timing is not None
+    return gateway, kept, outcome, timing
 
 
 @pytest.mark.slow
@@ -118,8 +129,8 @@ def test_an_hour_of_ticks_does_not_drift() -> None:
     late = np.array([row.lateness for row in kept.timings])
     assert link.time - 1000.0 == pytest.approx(3600.0, abs=0.02)
     assert late[-1000:].mean() == pytest.approx(late[:1000].mean(), abs=5e-5)
-    assert timing["p50_s"] == pytest.approx(2e-4 * np.log(2), rel=0.1)
-    assert timing["missed_deadlines"] == 0
+    assert timing.p50_s == pytest.approx(2e-4 * np.log(2), rel=0.1)
+    assert timing.missed_deadlines == 0
 
 
 def test_answers_in_time_make_the_trace_of_lockstep() -> None:
@@ -140,13 +151,15 @@ def test_an_answer_that_misses_its_tick_counts_from_when_it_came() -> None:
     assert [row.v_sent for row in kept.rows] == [None] * 61
     assert [row.v for row in kept.rows[5:]] == [1.0 + k for k in range(56)]
     assert gateway.audit.unanswered == 61
-    assert gateway.audit.command.report()["measured"]["mean"] == 5.0
+    measured = gateway.audit.command.report().measured
+    assert measured is not None
+    assert measured.mean == 5.0
 
 
 def test_a_machine_that_cannot_keep_up_is_told_of() -> None:
     link = SimulatedLink(lambda _: 0.001, lambda: 0.015)
     _, kept, _, timing = run(link, 1, 100)
-    assert timing["missed_deadlines"] > 40
+    assert timing.missed_deadlines > 40
     assert max(row.lateness for row in kept.timings) > PERIOD
     assert len(kept.rows) == 101
 

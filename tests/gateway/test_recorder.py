@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from laglab.run.plant import FmuPlant
+from laglab.runs.plant import FmuPlant
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
     Direction,
@@ -15,8 +15,8 @@ from laglab_gateway import (
     Gateway,
     GatewayConfig,
     Impairments,
-    Patience,
     RandomFates,
+    Surroundings,
     read_link_log,
     serve_lockstep,
 )
@@ -29,6 +29,7 @@ from laglab_protocol import (
     STATION_SYSTEM,
     Command,
     EndpointError,
+    Listener,
     Receiver,
     Sender,
     Tick,
@@ -41,13 +42,20 @@ DIRECTIONS: tuple[Direction, ...] = ("command", "measurement")
 class BreakingLink:
     """A station that answers at once, until the link to it breaks while a tick is sent."""
 
+    name = "breaking"
     datagrams = True
+    sender = peer = None
 
     def __init__(self) -> None:
         self._sender, self._receiver = Sender(STATION_SYSTEM, STATION_COMPONENT), Receiver()
         self._waiting = self._sender.frame(STATION_HEARTBEAT)
 
-    def send(self, data: bytes) -> None:
+    def fileno(self) -> int:
+        return -1
+
+    def reopen(self) -> None: ...
+
+    def send(self, data: bytes, _: object = None) -> None:
         for frame in self._receiver.receive(data):
             if isinstance(frame.message, Tick):
                 tick = frame.message.tick
@@ -74,7 +82,7 @@ def test_a_link_that_breaks_leaves_the_trace_and_what_the_link_did_up_to_the_sam
     with Robot.open(3, parameters) as robot, closing(FileRecorder(tmp_path)) as recorder:
         gateway = Gateway(FmuPlant(robot, parameters), GatewayConfig(0, 0, 100, 0.01), fates)
         with pytest.raises(EndpointError):
-            serve_lockstep(gateway, BreakingLink(), recorder, Patience(), lambda _: None)
+            serve_lockstep(gateway, Surroundings(Listener(BreakingLink(), Receiver()), recorder))
 
     whole = set(range(BREAKS_AT))
     assert set(read_trace(tmp_path / "trace.csv")["tick"]) == whole

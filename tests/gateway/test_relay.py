@@ -17,6 +17,7 @@ from laglab_gateway import (
     TraceRow,
     standard_parameters,
 )
+from laglab_gateway.relay import from_robot
 from laglab_protocol import (
     NO_COMMAND,
     ROBOT_COMPONENT,
@@ -33,7 +34,9 @@ from laglab_protocol import (
     Message,
     Receiver,
     Sender,
+    Settings,
     Tick,
+    frames_in,
 )
 from laglab_protocol.dialect.generated import laglab as mavlink
 
@@ -70,20 +73,21 @@ class Rig:
         self.relay = relay
         self.robot = Robot(first)
         self.station = Sender(STATION_SYSTEM, STATION_COMPONENT)
+        self.receiver = Receiver()
         self.rows: list[TraceRow] = []
         self.told: list[list[Message]] = []
 
     def feed(self, data: bytes) -> None:
-        for frame in self.relay.receive_from_robot(data, whole=False):
-            if not self.relay.hear(frame):
+        for frame in self.receiver.receive(data):
+            if not from_robot(frame) or not self.relay.hear_robot(frame):
                 continue
             if self.relay.under_way:
                 self.rows.append(self.relay.close_tick())
             if self.relay.outcome is None:
                 self.told.append(heard(self.relay.open_tick()))
 
-    def say(self, *messages: Message) -> None:
-        self.relay.receive(b"".join(map(self.station.frame, messages)), whole=True)
+    def say(self, *messages: Message) -> list[Message]:
+        return heard(self.relay.hear(frames_in(b"".join(map(self.station.frame, messages)))))
 
     def forward(self) -> list[Message]:
         forwarded = heard(self.relay.forward())
@@ -130,8 +134,8 @@ def test_both_delays_are_exact_by_the_robots_own_word(n: int, m: int, first: int
         assert row.v == ((first + k - n) / 1000 if k >= n else 0.0)
     report = rig.relay.audit.report()
     for direction, delay in (("command", n), ("measurement", m)):
-        assert report[direction]["measured"]["min"] == delay
-        assert report[direction]["measured"]["max"] == delay
+        assert getattr(report, direction).measured.min == delay
+        assert getattr(report, direction).measured.max == delay
 
 
 def test_with_n_zero_a_command_is_in_force_at_the_robots_next_tick() -> None:
@@ -179,7 +183,7 @@ def test_what_a_robot_must_not_get_is_refused_and_counted(
     rig.feed(rig.robot.tick())
     rig.say(Command(*bad, 0, 1, 1, 0))
     assert rig.forward() == []
-    assert rig.relay.audit.report()["refused"] == {why: 1}
+    assert rig.relay.audit.report().refused == {why: 1}
 
 
 def test_a_command_overtaken_on_the_link_is_stale() -> None:
@@ -187,7 +191,7 @@ def test_a_command_overtaken_on_the_link_is_stale() -> None:
     rig = Rig(relay(commands=fates_of(Event(0.0, 0.01, held_back))))
     rig.run(10)
     assert [row.v for row in rig.rows] == [0.0, 0.0] + [k / 1000 for k in range(1, 8)]
-    assert rig.relay.audit.report()["refused"] == {"stale": 1}
+    assert rig.relay.audit.report().refused == {"stale": 1}
 
 
 def test_the_links_timeline_goes_by_the_runs_time_not_the_robots() -> None:
@@ -196,7 +200,7 @@ def test_the_links_timeline_goes_by_the_runs_time_not_the_robots() -> None:
     rig.run(30)
     lost = [row.tick for row in rig.relay.take_link_rows() if row.fate == "lost"]
     assert lost == list(range(10, 15))
-    assert rig.relay.audit.report()["command"]["lost"] == {"lost": 5}
+    assert rig.relay.audit.report().command.lost == {"lost": 5}
 
 
 def test_the_stations_end_is_the_outcome_at_the_robots_next_tick() -> None:
@@ -231,18 +235,17 @@ def test_an_emergency_stop_stops_a_real_robot_for_good() -> None:
     rig.say(CommandLong(1.0, *[0.0] * 6, mavlink.MAV_CMD_DO_FLIGHTTERMINATION, 1, 1, 0))
     rig.run(5)
     assert [row.v for row in rig.rows[-3:]] == [0.0, 0.0, 0.0]
-    rig.relay.take_replies()
-    rig.say(CommandLong(*[0.0] * 7, mavlink.MAV_CMD_LAGLAB_RESET_POSE, 1, 1, 0))
-    (ack,) = heard(rig.relay.take_replies())
+    (ack,) = rig.say(CommandLong(*[0.0] * 7, mavlink.MAV_CMD_LAGLAB_RESET_POSE, 1, 1, 0))
     assert isinstance(ack, CommandAck)
     assert ack.result == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
     assert rig.relay.services.arming.stopped
 
 
 def test_the_robot_is_greeted_and_ended_as_by_its_station() -> None:
-    (greeting,) = Receiver().receive(relay().greeting())
+    greeting, settings = Receiver().receive(relay().greeting())
     (end,) = Receiver().receive(relay().end_of_robot(EndReason.FAILED))
     assert isinstance(greeting.message, Heartbeat)
+    assert isinstance(settings.message, Settings)
     assert end.message == End(0, EndReason.FAILED)
     for frame in (greeting, end):
         assert (frame.system, frame.component) == (STATION_SYSTEM, STATION_COMPONENT)

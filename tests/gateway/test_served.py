@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from laglab.run.plant import FmuPlant
+from laglab.runs.plant import FmuPlant
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
     Gateway,
@@ -29,6 +29,7 @@ from laglab_protocol import (
     CommandLong,
     Endpoint,
     Heartbeat,
+    Listener,
     LocalPositionNed,
     Message,
     ParamRequestRead,
@@ -36,6 +37,7 @@ from laglab_protocol import (
     ParamValue,
     Receiver,
     Sender,
+    frames_in,
     open_endpoint,
 )
 from laglab_protocol.dialect.generated import laglab as mavlink
@@ -66,7 +68,7 @@ def drive(gateway: Gateway, sender: Sender, v: float = 1.0) -> float:
     """One tick in which the station commands v; the distance covered [m]."""
     x = gateway.state.x
     gateway.open_tick()
-    gateway.receive(sender.frame(Command(v, 0.0, gateway.tick, 1, 1, 0)), whole=True)
+    gateway.hear(frames_in(sender.frame(Command(v, 0.0, gateway.tick, 1, 1, 0))))
     gateway.settle()
     gateway.close_tick()
     return gateway.state.x - x
@@ -76,21 +78,19 @@ def request(number: int, *numbers: float) -> CommandLong:
     return CommandLong(*numbers, *[0.0] * (7 - len(numbers)), number, 1, 1, 0)
 
 
-def told(gateway: Gateway) -> list[Message]:
-    return [frame.message for frame in Receiver().receive(b"".join(gateway.take_replies()))]
+def told(gateway: Gateway, asked: bytes) -> list[Message]:
+    return [frame.message for frame in frames_in(b"".join(gateway.hear(frames_in(asked))))]
 
 
 def test_requests_are_answered_on_the_loops_link(robot: Robot) -> None:
     gateway, sender = gateway_of(robot), Sender(255, 190)
-    gateway.receive(sender.frame(ParamRequestRead(0, 1, 1, b"")), whole=True)
-    gateway.receive(sender.frame(request(400, 0.0)), whole=True)
-    value, ack = told(gateway)
+    (value,) = told(gateway, sender.frame(ParamRequestRead(0, 1, 1, b"")))
+    (ack,) = told(gateway, sender.frame(request(400, 0.0)))
 
     assert isinstance(value, ParamValue)
     assert value.param_id == b"DELAY_N"
     assert isinstance(ack, CommandAck)
     assert ack.result == mavlink.MAV_RESULT_ACCEPTED
-    assert told(gateway) == []
 
 
 def test_only_the_station_drives(robot: Robot) -> None:
@@ -98,7 +98,7 @@ def test_only_the_station_drives(robot: Robot) -> None:
     gateway.open_tick()
     for system, component in [(255, 190), (200, 1), (1, 1), (201, 190)]:
         other = Sender(system, component)
-        gateway.receive(other.frame(Command(1.0, 0.0, 0, 1, 1, 0)), whole=True)
+        gateway.hear(frames_in(other.frame(Command(1.0, 0.0, 0, 1, 1, 0))))
 
     assert not gateway.answered
 
@@ -107,7 +107,7 @@ def test_disarmed_the_robot_stands_still(robot: Robot) -> None:
     gateway, sender = gateway_of(robot, armed=False), station()
     assert drive(gateway, sender) == 0.0
 
-    gateway.receive(sender.frame(request(400, 1.0)), whole=True)
+    gateway.hear(frames_in(sender.frame(request(400, 1.0))))
     assert drive(gateway, sender) == pytest.approx(SAMPLE_TIME)
 
 
@@ -115,7 +115,7 @@ def test_an_emergency_stop_stops_within_a_tick(robot: Robot) -> None:
     gateway, sender = gateway_of(robot), station()
     assert drive(gateway, sender) > 0.0
 
-    gateway.receive(Sender(255, 190).frame(request(185, 1.0)), whole=True)
+    gateway.hear(frames_in(Sender(255, 190).frame(request(185, 1.0))))
     assert drive(gateway, sender) == 0.0
 
 
@@ -123,7 +123,7 @@ def test_a_limit_set_holds_from_the_next_command_on(robot: Robot) -> None:
     gateway, sender = gateway_of(robot), station()
     assert drive(gateway, sender, 2.0) == pytest.approx(2.0 * SAMPLE_TIME)
 
-    gateway.receive(sender.frame(ParamSet(1.0, 1, 1, b"V_MAX", 9)), whole=True)
+    gateway.hear(frames_in(sender.frame(ParamSet(1.0, 1, 1, b"V_MAX", 9))))
     assert drive(gateway, sender, 3.0) == pytest.approx(2.0 * SAMPLE_TIME), "the last one holds"
     assert sum(gateway.audit.refused.values()) == 1
 
@@ -131,7 +131,7 @@ def test_a_limit_set_holds_from_the_next_command_on(robot: Robot) -> None:
 def test_the_pose_is_reset(robot: Robot) -> None:
     gateway, sender = gateway_of(robot, armed=False), station()
     reset = request(mavlink.MAV_CMD_LAGLAB_RESET_POSE, 5.0, math.nan, 0.5)
-    gateway.receive(sender.frame(reset), whole=True)
+    gateway.hear(frames_in(sender.frame(reset)))
     drive(gateway, sender)
 
     assert (gateway.state.x, gateway.state.y, gateway.state.theta) == (5.0, -2.0, 0.5)
@@ -144,7 +144,8 @@ def stack() -> Iterator[ExitStack]:
 
 
 def watcher(endpoint: Endpoint) -> Watcher:
-    return Watcher(endpoint, *Codec(ROBOT_SYSTEM, ROBOT_COMPONENT).on_another_link())
+    sender, receiver = Codec(ROBOT_SYSTEM, ROBOT_COMPONENT).on_another_link()
+    return Watcher(Listener(endpoint, receiver), sender)
 
 
 def test_a_watcher_sees_and_asks_but_does_not_drive(robot: Robot, stack: ExitStack) -> None:

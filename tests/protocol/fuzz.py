@@ -28,6 +28,7 @@ with atheris.instrument_imports(
         Message,
         Receiver,
         Sender,
+        frames_in,
     )
     from laglab_protocol.dialect.lint import lint
     from laglab_protocol.dialect.mavgen import dialect_path
@@ -66,7 +67,7 @@ def receiver(data: bytes) -> None:
     under_test = Receiver()
     frames = under_test.receive(data[:cut]) + under_test.receive(data[cut:])
     assert len(under_test._rest) < LARGEST_FRAME
-    frames += under_test.end_datagram()
+    frames += under_test.receive(b"", whole=True)
     assert under_test._rest == b""
     for frame in frames:
         SPEAKER.frame(frame.message)
@@ -77,7 +78,7 @@ def signed(data: bytes) -> None:
     data = spoiled(SIGNED_STREAM, data)
     timestamps = Timestamps()
     under_test = Receiver(Verifier(bytes(range(32)), timestamps, clock=lambda: 10**13))
-    assert under_test.receive(data) + under_test.end_datagram() == []
+    assert under_test.receive(data, whole=True) == []
     assert timestamps.last == {}
     assert under_test._expected == {}
 
@@ -122,7 +123,7 @@ def station(data: bytes) -> None:
     """Whatever the robot says."""
     under_test, robot = Station(StationConfig()), Sender(ROBOT_SYSTEM, ROBOT_COMPONENT)
     for message in said(data):
-        under_test.receive(robot.frame(message), datagram=True)
+        under_test.hear(frames_in(robot.frame(message)))
         under_test.look_ahead()
 
 
@@ -134,7 +135,7 @@ def relay(data: bytes) -> None:
     )
     robot, other = Sender(ROBOT_SYSTEM, ROBOT_COMPONENT), Sender(STATION_SYSTEM, STATION_COMPONENT)
     for message in said(data):
-        under_test.receive(other.frame(message), whole=True)
+        under_test.hear(frames_in(other.frame(message)))
         for frame in under_test.receive_from_robot(robot.frame(message), whole=True):
             if under_test.hear(frame):
                 if under_test.under_way:

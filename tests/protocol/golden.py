@@ -7,7 +7,16 @@ these fields of these bytes. The bytes were made by pymavlink and agree with mav
 import math
 from typing import NamedTuple
 
-from laglab_protocol import Command, End, Estimate, Heartbeat, Measurement, Message, Tick
+from laglab_protocol import (
+    Command,
+    End,
+    Estimate,
+    Heartbeat,
+    Measurement,
+    Message,
+    Settings,
+    Tick,
+)
 
 
 class Golden(NamedTuple):
@@ -131,6 +140,24 @@ GOLDEN = [
         21,
         End(1000, 3),
         "fd05000015c8be88cb00e8030000039fc7",
+    ),
+    Golden(
+        "a station's settings",
+        200,
+        190,
+        22,
+        Settings(0.01, 0.05, 0.6, 1.0, 1.7, 10, 20, 2),
+        "fd2d000016c8be89cb007b14ae47e17a843f9a9999999999a93f333333333333e33f000000000000"
+        "f03f333333333333fb3f0a00140002aeff",
+    ),
+    Golden(
+        "a robot that knows little",
+        1,
+        1,
+        23,
+        Settings(0.02, math.nan, math.nan, math.inf, math.inf, 65535, 65535, 2),
+        "fd2d000017010189cb007b14ae47e17a943f000000000000f87f000000000000f87f000000000000"
+        "f07f000000000000f07fffffffff02bb1b",
     ),
     Golden(
         "a rover's heartbeat",

@@ -28,6 +28,7 @@ from laglab_protocol import (
     ParamValue,
     Ping,
     Sender,
+    Settings,
     Tick,
 )
 
@@ -96,7 +97,7 @@ class Peer(threading.Thread):
         receiver = self.codec.receiver
         if self.fault == "believes the unsigned" and data[:1] == b"\xfd" and not data[2]:
             receiver = self.open.receiver
-        return receiver.receive(data) + receiver.end_datagram()
+        return receiver.receive(data, whole=True)
 
     def send(self, *messages: Message) -> None:
         if self.slow:
@@ -194,6 +195,8 @@ class Robot(Peer):
             case ParamRequestRead(index, _, _, name):
                 self.send(values[0 if index == 0 or self.fault != "mixes names up" else 1])
                 del name
+            case Settings() if self.fault != "keeps its settings to itself":
+                self.send(Settings(0.01))
             case Ping() if self.fault != "does not answer pings":
                 self.send(replace(message, target_system=200, target_component=190))
 
@@ -262,7 +265,8 @@ class Controller(Peer):
 
     def silence(self) -> None:
         if self.last is None:
-            self.send(ALIVE)
+            secret = self.fault == "keeps its settings to itself"
+            self.send(ALIVE, *([] if secret else [Settings(0.01)]))
 
     def hear(self, message: Message) -> None:
         match message:

@@ -17,7 +17,7 @@ def ours(datagrams: list[bytes]) -> list[bytes]:
     receiver = Receiver()
     frames = []
     for datagram in datagrams:
-        frames += receiver.receive(datagram) + receiver.end_datagram()
+        frames += receiver.receive(datagram, whole=True)
     return [frame.raw for frame in frames]
 
 

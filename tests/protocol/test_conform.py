@@ -9,13 +9,13 @@ from xml.etree import ElementTree
 
 import pytest
 
-from laglab_conformance import Pace, Patience, Report, conform, controller, freerunning, lockstep
+from laglab_conformance import Pace, Report, Waits, conform, controller, freerunning, lockstep
 from laglab_conformance.items import Item
 from laglab_protocol import make_key, open_endpoint
 
 from .reference_peers import Controller, FreeRunningRobot, Robot
 
-QUICK = Patience(appear=3.0, react=1.0, refuse=0.1)
+QUICK = Waits(appear=3.0, react=1.0, refuse=0.1)
 
 BOTH = {
     "compares half of the CRC": "a corrupted frame is refused",
@@ -34,6 +34,7 @@ BOTH = {
     "sends stray bytes": "it sends nothing but frames",
     "skips numbers": "it numbers its frames one by one",
     "sends zeros": "it leaves trailing zeros at home",
+    "keeps its settings to itself": "it tells its settings",
 }
 SIGNED = {
     "believes the unsigned": "unsigned frames are refused",
@@ -198,7 +199,7 @@ def test_a_robot_with_a_clock_of_its_own_is_told_from_one_that_breaks_the_lock_s
 def test_nobody_there_is_said() -> None:
     with open_endpoint("udpin://127.0.0.1:0") as free:
         url = free.name.replace("udpin", "udpout")
-    report = conform(url, "robot", None, Patience(0.2, 0.02, 0.02))
+    report = conform(url, "robot", None, Waits(0.2, 0.02, 0.02))
 
     assert not report.conforms
     assert "no LAGLAB_TICK" in report.results[0].reason

@@ -66,7 +66,7 @@ def peer(tmp_path_factory: pytest.TempPathFactory, endpoint: Endpoint) -> Iterat
 def next_of_ours(endpoint: Endpoint) -> Frame:
     receiver = Receiver()
     while data := endpoint.receive(5.0):
-        for frame in receiver.receive(data) + receiver.end_datagram():
+        for frame in receiver.receive(data, whole=True):
             if layout_of(frame.message).id >= 52100:
                 return frame
     raise AssertionError("libmav sent nothing of ours")

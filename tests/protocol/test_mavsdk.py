@@ -98,7 +98,7 @@ def next_named(endpoint: Endpoint, name: str) -> Frame:
     receiver, deadline = Receiver(), time.monotonic() + 10.0
     while time.monotonic() < deadline:
         data = endpoint.receive(1.0)
-        for frame in receiver.receive(data) + receiver.end_datagram():
+        for frame in receiver.receive(data, whole=True):
             if layout_of(frame.message).name == name:
                 return frame
     raise AssertionError(f"mavsdk sent no {name}")

@@ -71,7 +71,7 @@ def test_both_ways_at_once_each_at_the_baud_rate(running: Running, stack: ExitSt
     at_the_rate = 3000 * 10 / BAUD
     assert 0.99 * at_the_rate < time.monotonic() - started < 1.1 * at_the_rate
     running.close()
-    assert [way.carried for way in running.pair.directions] == [3000, 3000]
+    assert [way.carried for way in running.pair.lanes] == [3000, 3000]
 
 
 def test_a_writer_faster_than_the_line_has_to_wait(running: Running, stack: ExitStack) -> None:
@@ -95,7 +95,7 @@ def test_a_port_that_nobody_reads_loses_bytes_and_holds_nobody_up(
     """At a rate that fills the kernel's buffer soon."""
     pair = stack.enter_context(SerialPair(str(tmp_path / "one"), str(tmp_path / "two"), 4_000_000))
     writer = stack.enter_context(open_endpoint(f"serial://{tmp_path / 'one'}:{BAUD}"))
-    way, sent, carried = pair.directions[0], 0, []
+    way, sent, carried = pair.lanes[0], 0, []
     while len(carried) < 100:
         writer.send(bytes(1000))
         sent += 1000

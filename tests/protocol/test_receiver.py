@@ -58,7 +58,7 @@ def test_garbage_between_frames_costs_no_frame(garbage: list[bytes]) -> None:
     mixed = garbage[0] + b"".join(map(bytes.__add__, sent, garbage[1:]))
     receiver = Receiver()
 
-    received = raws(receiver.receive(mixed) + receiver.end_datagram())
+    received = raws(receiver.receive(mixed, whole=True))
 
     assert [raw for raw in received if raw in sent] == sent
     assert receiver.counters.noise == len(mixed) - sum(map(len, received))
@@ -69,7 +69,7 @@ def test_a_false_start_costs_no_frame(start: bytes) -> None:
     sent = frames_of(10)
     receiver = Receiver()
 
-    received = receiver.receive(start + b"".join(sent)) + receiver.end_datagram()
+    received = receiver.receive(start + b"".join(sent), whole=True)
 
     assert raws(received) == sent
 
@@ -90,7 +90,7 @@ def test_a_truncated_datagram_does_not_eat_the_next() -> None:
     receiver = Receiver()
 
     assert receiver.receive(first[:-5]) == []
-    assert receiver.end_datagram() == []
+    assert receiver.receive(b"", whole=True) == []
     assert raws(receiver.receive(second)) == [second]
     assert receiver.counters.refused[Refusal.INCOMPLETE] == 1
 
@@ -101,7 +101,7 @@ def test_corruption_anywhere_costs_only_its_own_frame() -> None:
         bad = bytearray(sent[1])
         bad[position] ^= 0x55
         receiver = Receiver()
-        received = receiver.receive(sent[0] + bad + sent[2]) + receiver.end_datagram()
+        received = receiver.receive(sent[0] + bad + sent[2], whole=True)
         assert raws(received) == [sent[0], sent[2]]
 
 
@@ -139,6 +139,6 @@ def test_no_bytes_raise_and_little_is_kept(pieces: list[bytes]) -> None:
     for piece in pieces:
         receiver.receive(piece)
         assert len(receiver._rest) < 10 + 255 + 2 + 13
-    receiver.end_datagram()
+    receiver.receive(b"", whole=True)
 
     assert receiver._rest == b""

@@ -45,7 +45,7 @@ class Listening:
         self.receiver = Receiver(Verifier(KEY, self.timestamps, allow, clock=lambda: now))
 
     def hears(self, raw: bytes) -> bool:
-        return bool(self.receiver.receive(raw) + self.receiver.end_datagram())
+        return bool(self.receiver.receive(raw, whole=True))
 
     @property
     def state(self) -> tuple[Any, ...]:
@@ -133,7 +133,7 @@ def test_unsigned_passes_by_name_only() -> None:
 def test_without_a_key_what_is_signed_is_not_believed() -> None:
     receiver = Receiver()
 
-    assert receiver.receive(signed()) + receiver.end_datagram() == []
+    assert receiver.receive(signed(), whole=True) == []
     assert receiver.counters.refused[Refusal.NO_KEY] == 1
 
 

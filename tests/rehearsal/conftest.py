@@ -54,7 +54,7 @@ def rehearsed(tmp_path: Path) -> Callable[..., dict[str, Any]]:
     def call(*arguments: str, exit_code: int = 0) -> dict[str, Any]:
         out = tmp_path / "run"
         with pytest.raises(SystemExit) as ended:
-            main(["run", *arguments, "--transport", "inline", "--out", str(out)])
+            main(["run", *arguments, "--transport", "inline", "--out", str(out), "--force"])
         assert ended.value.code == exit_code
         summary: dict[str, Any] = json.loads((out / "summary.json").read_text())
         return summary

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import laglab
 from laglab.bench import by_hand
 from laglab.bench.loop import TRANSPORTS, loop_scenario
 from laglab.bench.round_trip import seconds_per_echo, tick_sizes
-from laglab.run.rehearse import rehearse
 from laglab_gateway import read_trace
 
 
@@ -20,7 +20,7 @@ def test_the_loop_by_hand_leaves_our_trace(tmp_path: Path, transport: str) -> No
     scenario = loop_scenario("popf", ticks=60)
     assert 0 < by_hand.seconds_per_tick(transport, scenario, tmp_path) < 1
     theirs = read_trace(tmp_path / "trace.csv")
-    rehearse(scenario, "inline", tmp_path / "ours", lambda _: None)
+    laglab.run(scenario, out=tmp_path / "ours")
     ours = read_trace(tmp_path / "ours" / "trace.csv")
     for column, values in ours.items():
         np.testing.assert_array_equal(theirs[column], values, err_msg=column)
@@ -31,9 +31,9 @@ def test_the_loop_by_hand_leaves_our_trace(tmp_path: Path, transport: str) -> No
 def test_the_echo_carries_as_many_bytes_as_a_tick(tmp_path: Path, transport: str) -> None:
     sizes = tick_sizes(estimates=True)
     assert 0 < seconds_per_echo(transport, sizes, ticks=50) < 0.1
-    rehearse(loop_scenario("popf", ticks=60), "inline", tmp_path, lambda _: None)
+    laglab.run(loop_scenario("popf", ticks=60), out=tmp_path)
     frames = (tmp_path / "robot.tlog").stat().st_size / 61
-    assert sum(sizes) + 4 * 8 == pytest.approx(frames, rel=0.3)
+    assert sizes.to_station + sizes.to_robot + 4 * 8 == pytest.approx(frames, rel=0.3)
 
 
 @pytest.mark.slow

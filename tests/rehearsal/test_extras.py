@@ -65,8 +65,8 @@ def test_each_side_runs_where_only_what_it_needs_is_installed(
     machine.install(".[controller]")
     assert not machine.has("fmpy")
     assert not machine.has("matplotlib")
-    assert "pip install '.[gateway]'" in machine.refuses("gateway", "lab")
-    assert "pip install '.[run]'" in machine.refuses("run", "lab")
+    assert "pip install 'laglab[gateway]'" in machine.refuses("gateway", "lab")
+    assert "pip install 'laglab[run]'" in machine.refuses("run", "lab")
 
     ours = [sys.executable, "-m", "laglab", "gateway", *OPTIONS, "udpin://127.0.0.1:0"]
     with subprocess.Popen(ours, stderr=subprocess.PIPE, text=True) as gateway:

@@ -6,10 +6,7 @@ from multiprocessing import get_context
 import numpy as np
 import pytest
 
-from laglab.results.pose import robot_pose
-from laglab.results.summary import goal_errors
-from laglab.run.trials import completed, run_trial
-from laglab.scenario import load
+import laglab
 
 SEEDS = 100
 
@@ -19,10 +16,8 @@ def ends_at_goal(seed):
     random = np.random.default_rng(seed)
     distance, bearing = 5 * np.sqrt(random.uniform()), random.uniform(-np.pi, np.pi)
     start = (distance * np.cos(bearing), distance * np.sin(bearing), random.uniform(-np.pi, np.pi))
-    scenario = load("lab", {"start": start, "seed": seed})
-    trace = run_trial(scenario)
-    rho, theta = goal_errors(robot_pose(trace)[-1:], scenario)
-    return completed(trace, scenario) and bool(rho[0] < 0.06 and abs(theta[0]) < 0.05)
+    final = laglab.run("lab", {"start": start, "seed": seed}).summary.final
+    return final.rho < 0.06 and abs(final.theta_error) < 0.05
 
 
 @pytest.mark.slow

@@ -2,7 +2,7 @@
 
 import gc
 
-from laglab.run.pauses import short_pauses
+from laglab.runs.pauses import short_pauses
 
 
 def test_what_is_there_already_is_not_looked_through_again() -> None:

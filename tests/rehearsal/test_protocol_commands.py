@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import pytest
 from pymavlink import mavutil
 
-from laglab.run.robot_side import shown_parameters
+from laglab.runs.robot_side import shown_parameters
 from laglab.scenario import Scenario
 from laglab_protocol import (
     CommandLong,
@@ -153,7 +153,7 @@ def test_a_disarmed_robot_moves_when_a_ground_station_arms_it(
         deadline = time.monotonic() + 20
         while time.monotonic() < deadline:
             link.send(sender.frame(Heartbeat(0, 6, 8, 0, 4, 3)))
-            for frame in receiver.receive(link.receive(0.2)) + receiver.end_datagram():
+            for frame in receiver.receive(link.receive(0.2), whole=True):
                 if isinstance(frame.message, LocalPositionNed):
                     return frame.message.x, frame.message.y
         raise AssertionError("the robot tells no position")

@@ -2,7 +2,7 @@
 
 from laglab_control.estimators.delayed_ekf import DelayedEkf
 from laglab_control.estimators.ekf import Ekf
-from laglab_control.estimators.family import ESTIMATORS, Kind, estimator_kind
+from laglab_control.estimators.family import ESTIMATORS, EstimatorKind, estimator_kind
 from laglab_control.estimators.interface import Applied, Estimator, Measured, State
 from laglab_control.estimators.kalman import Innovation
 from laglab_control.estimators.popf import Popf
@@ -16,8 +16,8 @@ __all__ = [
     "DelayedEkf",
     "Ekf",
     "Estimator",
+    "EstimatorKind",
     "Innovation",
-    "Kind",
     "Measured",
     "Popf",
     "PopfExact",

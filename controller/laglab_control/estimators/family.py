@@ -15,7 +15,7 @@ from laglab_control.estimators.windows import RigidMotions
 from laglab_control.robot import RobotModel
 
 
-class Kind(NamedTuple):
+class EstimatorKind(NamedTuple):
     """What an estimator is, and how to make it for a robot."""
 
     description: str
@@ -24,36 +24,36 @@ class Kind(NamedTuple):
     """Whether it gives an estimate of the present, which can be extrapolated and reported."""
 
 
-ESTIMATORS: Mapping[str, Kind] = {
-    "raw": Kind(
+ESTIMATORS: Mapping[str, EstimatorKind] = {
+    "raw": EstimatorKind(
         "no filter and no prediction: the newest measurement",
         lambda _: Raw(),
         predicts=False,
     ),
-    "ekf": Kind(
+    "ekf": EstimatorKind(
         "the plain EKF, which takes a late measurement for a fresh one",
         lambda model: Rewinding(Ekf(model)),
     ),
-    "popf": Kind(
+    "popf": EstimatorKind(
         "the paper's filter",
         lambda model: Rewinding(Popf(model)),
     ),
-    "popf-printed": Kind(
+    "popf-printed": EstimatorKind(
         "the paper's filter with the innovation as (28) prints it",
         lambda model: Rewinding(Popf(model, innovation_at_k=True)),
     ),
-    "popf-exact": Kind(
+    "popf-exact": EstimatorKind(
         "the structure of popf with the true cross-covariances",
         lambda model: Rewinding(PopfExact(model)),
     ),
-    "delayed-ekf": Kind(
+    "delayed-ekf": EstimatorKind(
         "the optimum: an EKF at the measurement's tick, carried forward over the known inputs",
         lambda model: DelayedEkf(model, RigidMotions(model)),
     ),
 }
 
 
-def estimator_kind(name: str) -> Kind:
+def estimator_kind(name: str) -> EstimatorKind:
     """The estimator of that name. Raises ConfigError, listing the names, when there is none."""
     if name not in ESTIMATORS:
         raise ConfigError(f"no estimator {name!r}: take one of {', '.join(ESTIMATORS)}")

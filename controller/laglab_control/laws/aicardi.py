@@ -11,7 +11,7 @@ from laglab_control.angle import wrap
 from laglab_control.model import Vector
 
 
-class Drive(NamedTuple):
+class Demand(NamedTuple):
     """What the law answers: v [m/s], omega [rad/s], and whether it holds the robot at the goal."""
 
     v: float
@@ -19,7 +19,7 @@ class Drive(NamedTuple):
     at_goal: bool
 
 
-STAND_STILL = Drive(0.0, 0.0, at_goal=False)
+STAND_STILL = Demand(0.0, 0.0, at_goal=False)
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Law:
     omega_max: float | None = None
     goal_tolerance: float | None = None
 
-    def drive(self, pose: Iterable[float], at_goal: bool) -> Drive:
+    def drive(self, pose: Iterable[float], at_goal: bool) -> Demand:
         """The command at a finite `pose` (3,). `at_goal` is the last answer's, False at first."""
         x, y, theta = pose
         x_goal, y_goal, theta_goal = self.goal
@@ -49,7 +49,7 @@ class Law:
             psi = math.atan2(y_goal - y, x_goal - x)
             v, omega = self._polar(rho, alpha=wrap(psi - theta), phi=wrap(psi - theta_goal))
             at_goal = False
-        return Drive(_clamp(v, self.v_max), _clamp(omega, self.omega_max), at_goal)
+        return Demand(_clamp(v, self.v_max), _clamp(omega, self.omega_max), at_goal)
 
     def _holds(self, rho: float, at_goal: bool) -> bool:
         """Entered below the tolerance, left only above twice the tolerance."""
@@ -69,6 +69,6 @@ def _clamp(value: float, limit: float | None) -> float:
     return value if limit is None else min(max(value, -limit), limit)
 
 
-def as_input(drive: Drive) -> Vector:
+def as_input(drive: Demand) -> Vector:
     """The command as the model's input u = [v, omega]."""
     return np.array((drive.v, drive.omega))

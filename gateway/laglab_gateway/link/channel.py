@@ -4,10 +4,10 @@ import heapq
 import math
 from typing import Generic, NamedTuple, TypeVar
 
-from laglab_gateway.link.fates import Fates, Kind
+from laglab_gateway.link.fates import FateKind, Fates
 from laglab_gateway.link.log import LinkRow
 from laglab_gateway.link.timeline import Direction
-from laglab_protocol import Message, Receiver, Sender
+from laglab_protocol import Message, Sender, frames_in
 
 M = TypeVar("M", bound=Message)
 
@@ -58,6 +58,10 @@ class Channel(Generic[M]):
             due.append(heapq.heappop(self._waiting)[2])
         return due
 
+    def clear(self) -> None:
+        """Lose all that is on its way."""
+        self._waiting.clear()
+
     def take_log(self) -> list[LinkRow]:
         """What was done to every frame since the last call."""
         log, self._log = self._log, []
@@ -85,14 +89,13 @@ class Channel(Generic[M]):
         return self._frame[1]
 
 
-def _received(kind: Kind, sent: M, raw: bytes) -> M | None:
+def _received(kind: FateKind, sent: M, raw: bytes) -> M | None:
     """A corrupted frame goes through a receiver: one in 65,536 gets past its CRC."""
-    if kind is Kind.DELIVERED:
+    if kind is FateKind.DELIVERED:
         return sent
-    if kind is not Kind.CORRUPTED:
+    if kind is not FateKind.CORRUPTED:
         return None
-    receiver = Receiver()
-    for frame in receiver.receive(raw) + receiver.end_datagram():
+    for frame in frames_in(raw):
         if isinstance(frame.message, type(sent)):
             return frame.message
     return None

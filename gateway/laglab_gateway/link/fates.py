@@ -10,7 +10,7 @@ from laglab_gateway.link.impairments import Burst, Impairments
 from laglab_gateway.link.timeline import Event, in_force, within
 
 
-class Kind(StrEnum):
+class FateKind(StrEnum):
     """What the link did to a frame."""
 
     DELIVERED = "delivered"
@@ -24,7 +24,7 @@ class Kind(StrEnum):
 class Fate(NamedTuple):
     """One copy of a frame: what was done, how much later than the fixed delay [s], its bytes."""
 
-    kind: Kind
+    kind: FateKind
     extra: float
     raw: bytes
 
@@ -55,21 +55,21 @@ class RandomFates:
             return [Fate(lost, 0.0, raw)]
         waited = self._queue(link, time, len(raw))
         if waited is None:
-            return [Fate(Kind.QUEUE_FULL, 0.0, raw)]
+            return [Fate(FateKind.QUEUE_FULL, 0.0, raw)]
         received = self._flip_bits(link, raw)
-        kind = Kind.DELIVERED if received == raw else Kind.CORRUPTED
+        kind = FateKind.DELIVERED if received == raw else FateKind.CORRUPTED
         copies = 2 if self._happens(link.duplicate) else 1
         return [Fate(kind, waited + self._late(link), received) for _ in range(copies)]
 
     def _happens(self, probability: float) -> bool:
         return probability > 0 and self._rng.random() < probability
 
-    def _loss(self, link: Impairments, time: float) -> Kind | None:
+    def _loss(self, link: Impairments, time: float) -> FateKind | None:
         if any(within(time, start, duration) for start, duration in link.outages):
-            return Kind.OUTAGE
+            return FateKind.OUTAGE
         if self._happens(link.loss):
-            return Kind.LOST
-        return Kind.BURST if link.burst and self._burst_loss(link.burst) else None
+            return FateKind.LOST
+        return FateKind.BURST if link.burst and self._burst_loss(link.burst) else None
 
     def _burst_loss(self, burst: Burst) -> bool:
         moves = burst.bad_to_good if self._bad else burst.good_to_bad

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from laglab_gateway.errors import TimelineError
-from laglab_gateway.link.fates import Fate, Kind
+from laglab_gateway.link.fates import Fate, FateKind
 from laglab_gateway.link.timeline import Direction
 
 
@@ -30,18 +30,19 @@ class RecordedFates:
     """The fates of another run, frame by frame; frames that it did not have are delivered."""
 
     def __init__(self, rows: Iterable[LinkRow]) -> None:
-        self._fates: dict[tuple[int, int], list[tuple[Kind, float]]] = defaultdict(list)
+        self._fates: dict[tuple[int, int], list[tuple[FateKind, float]]] = defaultdict(list)
         for row in rows:
-            self._fates[row.tick, row.frame].append((Kind(row.fate), row.extra))
+            self._fates[row.tick, row.frame].append((FateKind(row.fate), row.extra))
         self._tick, self._frame = -1, 0
 
     def of(self, tick: int, time: float, raw: bytes) -> list[Fate]:  # noqa: ARG002 the tick tells
         """As recorded for the frame of the same number in the same tick."""
         self._frame = self._frame + 1 if tick == self._tick else 0
         self._tick = tick
-        recorded = self._fates.get((tick, self._frame), [(Kind.DELIVERED, 0.0)])
+        recorded = self._fates.get((tick, self._frame), [(FateKind.DELIVERED, 0.0)])
         return [
-            Fate(kind, extra, raw if kind is Kind.DELIVERED else b"") for kind, extra in recorded
+            Fate(kind, extra, raw if kind is FateKind.DELIVERED else b"")
+            for kind, extra in recorded
         ]
 
 
@@ -61,4 +62,6 @@ def read_link_log(path: Path, direction: Direction) -> list[LinkRow]:
 def _row(
     direction: str, tick: str, frame: str, copy: str, size: str, fate: str, extra: str
 ) -> LinkRow:
-    return LinkRow(direction, int(tick), int(frame), int(copy), int(size), Kind(fate), float(extra))
+    return LinkRow(
+        direction, int(tick), int(frame), int(copy), int(size), FateKind(fate), float(extra)
+    )

@@ -1,15 +1,22 @@
 """One gateway's talk with its station over one endpoint: what every pace has in common."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from time import monotonic
-from typing import Protocol
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 
 from laglab_gateway.errors import StationSilentError
+from laglab_gateway.loops.surroundings import Surroundings
 from laglab_gateway.loops.watch import Watch
 from laglab_gateway.record.recorder import Recorder
-from laglab_gateway.side import Outcome, RobotSide, from_station
-from laglab_protocol import Silence
+from laglab_gateway.side import RobotSide, from_station
+from laglab_protocol import (
+    EndpointError,
+    EndReason,
+    Frame,
+    Settings,
+    SettingsError,
+    differences,
+    refuse_other_sample_time,
+)
 
 TIMESYNC_TICKS = 10
 """How often the station's clock is asked for."""
@@ -17,72 +24,65 @@ TIMESYNC_TICKS = 10
 END_TRIES = 5
 """A lost END only costs the station its silence timeout, so a few tries are enough."""
 
+LARGEST_DATAGRAM = 1200
+"""[bytes] Every path carries so many in one piece, and no answer is worth more than a piece."""
 
-@dataclass(frozen=True)
-class Patience:
-    """How long to wait, all in wall seconds; `connect` None waits for the station for ever."""
-
-    repeat_after: float = 0.1
-    silence: float = 3.0
-    connect: float | None = None
-
-    @property
-    def robot_silence(self) -> float:
-        """Of a real robot: shorter, so that the station hears of it before it gives us up."""
-        return self.silence / 3
-
-
-class Link(Protocol):
-    """What the loops need of an endpoint."""
-
-    @property
-    def datagrams(self) -> bool:
-        """Whether `receive` gives whole datagrams."""
-
-    def send(self, data: bytes) -> None:
-        """To the station."""
-
-    def receive(self, timeout: float) -> bytes:
-        """From the station; nothing when nothing came within `timeout` [s]."""
-
-    def accept_peer(self) -> None:
-        """The last bytes came from the station itself: from now on send there."""
+PATIENT_WITH_KEYS = 1.0
+"""[s] After so long without a frame that we may take, we say how many we may not."""
 
 
 class Conversation:
     """Sends, listens, records, and knows since when the station is silent."""
 
-    def __init__(
-        self,
-        gateway: RobotSide,
-        endpoint: Link,
-        recorder: Recorder,
-        patience: Patience,
-        now: Callable[[], float] = monotonic,
-        watch: Watch | None = None,
-    ) -> None:
-        self.now = now
+    def __init__(self, gateway: RobotSide, around: Surroundings) -> None:
+        self.now = around.now
         self._gateway = gateway
-        self._endpoint = endpoint
-        self._recorder = recorder
-        self._patience = patience
-        self._watch = watch or Watch(gateway.services, [])
-        self._heard, self._heard_tick = now(), 0
-        self._silence = Silence(endpoint.datagrams, now)
+        self._around = around
+        self._listener = around.station
+        self._link = around.station.link
+        self._recorder = around.recorder
+        self._patience = around.patience
+        self._watch = around.watch or Watch(gateway.services, [])
+        self._heard, self._heard_tick = self.now(), 0
+        self._settings: Settings | None = None
+        self._told: set[str] = set()
+        self._begun = False
+
+    @contextmanager
+    def run(self) -> Iterator[None]:
+        """However the run ends within, the station is told; Ctrl-C ends it in order."""
+        try:
+            yield
+        except KeyboardInterrupt:
+            self._gateway.stop(EndReason.INTERRUPTED)
+        except BaseException:
+            self._recorder = Recorder()  # it may be what failed
+            with suppress(EndpointError):
+                self._say_goodbye()
+            raise
+        self._say_goodbye()
 
     def wait_for_station(self) -> None:
-        """Until the station's first heartbeat. Raises StationSilentError."""
+        """Until the station's first heartbeat.
+
+        Raises StationSilentError, and SettingsError when it ticks at another pace.
+        """
         started = self.now()
         while not self._gateway.connected:
             self.listen(self._patience.repeat_after)
             self._recorder.flush()
             waited = self.now() - started
+            if waited > PATIENT_WITH_KEYS:
+                self._tell_of_keys()
             if self._patience.connect is not None and waited > self._patience.connect:
                 raise StationSilentError(None, waited)
+        self._begun = True
+        if self._settings is None:
+            self._warn("the controller does not tell its settings: nothing to compare with ours")
 
-    def send(self, frames: list[bytes]) -> None:
+    def send(self, frames: Sequence[bytes]) -> None:
         """Send whole frames as one datagram."""
-        self._endpoint.send(b"".join(frames))
+        self._link.send(b"".join(frames))
         self._recorder.frames(self._gateway.time_us, frames)
 
     def catch_up(self) -> None:
@@ -98,21 +98,72 @@ class Conversation:
 
     def listen(self, timeout: float) -> None:
         """Take what arrives, for at most `timeout` [s]."""
-        data = self._endpoint.receive(timeout)
-        frames = self._gateway.receive(data, whole=self._silence.after(data))
-        if any(from_station(frame) for frame in frames):
-            self._endpoint.accept_peer()
-            self._heard, self._heard_tick = self.now(), self._gateway.tick
-        self._recorder.frames(self._gateway.time_us, [frame.raw for frame in frames])
+        frames = self._listener.listen(timeout)
+        if frames and any(from_station(frame) for frame in frames):
+            frames = self._of_the_station_in_force(frames)
+        if frames:
+            replies = self._gateway.hear(frames)
+            self._recorder.frames(self._gateway.time_us, [frame.raw for frame in frames])
+            if replies:
+                self._reply(replies)
         if not self._gateway.answered:
             self._look_around()
 
+    def _of_the_station_in_force(self, frames: list[Frame]) -> list[Frame]:
+        """All of them if there is no other station; without a station's if another is in force."""
+        link, now = self._link, self.now()
+        if link.peer is not None and link.sender != link.peer:
+            if now - self._heard < self._patience.in_force:
+                link.send(self._gateway.end(EndReason.DISPLACED), to=link.sender)
+                return [frame for frame in frames if not from_station(frame)]
+            self._warn("another station has taken over")
+            link.send(self._gateway.end(EndReason.DISPLACED))
+        link.accept_peer()
+        self._heard, self._heard_tick = now, self._gateway.tick
+        return frames
+
+    def _reply(self, frames: list[bytes]) -> None:
+        """To whoever asked; what does not get there is the asker's loss, not the run's."""
+        try:
+            for datagram in _datagrams(frames):
+                self._link.send(datagram, to=self._link.sender)
+        except EndpointError as error:
+            self._warn(f"an answer was not sent: {error}")
+        self._recorder.frames(self._gateway.time_us, frames)
+        if self._settings != self._gateway.station_settings:
+            self._compare_settings()
+
+    def _compare_settings(self) -> None:
+        self._settings = self._gateway.station_settings
+        assert self._settings is not None, "only a message changes it"
+        try:
+            refuse_other_sample_time(self._gateway.settings, self._settings)
+        except SettingsError as error:
+            if not self._begun:
+                raise
+            self._warn(str(error))  # it came later, and will find out by itself
+        if said := differences(self._gateway.settings, self._settings):
+            self._warn(f"the two sides were told different things: {said}")
+
+    def _warn(self, text: str) -> None:
+        """Once: who runs the gateway, in full; who listens, in short."""
+        if text not in self._told:
+            self._told.add(text)
+            self._around.warn(text)
+            self._gateway.announce(text)
+
+    def _tell_of_keys(self) -> None:
+        if (refused := self._listener.refused) and "keys" not in self._told:
+            self._told.add("keys")
+            self._around.warn(
+                f"{self._link.name}: {refused} frames refused: not signed with this key"
+            )
+
     def _look_around(self) -> None:
-        """Send what others than the loop asked for, and look after those who watch."""
+        """Say what was announced, and look after those who watch."""
         if notices := self._gateway.take_notices():
             self._watch.tell(notices)
-        if replies := self._gateway.take_replies():
-            self.send(replies)
+            self.send(self._gateway.framed(notices))
         self._watch.poll(lambda: self._gateway.state)
         for name in self._watch.take_lost():
             self._gateway.announce(f"lost the watcher {name}")
@@ -132,18 +183,30 @@ class Conversation:
         if silence > self._patience.silence:
             raise StationSilentError(self._heard_tick, silence)
 
-    def finish_tick(self) -> int:
-        """Close the tick and record it; returns the tick."""
+    def finish_tick(self) -> None:
+        """Close the tick and record it."""
         row = self._gateway.close_tick()
         self._recorder.row(row)
         if rows := self._gateway.take_link_rows():
             self._recorder.link(rows)
-        return row.tick
+        self._around.progress(row.tick)
 
-    def say_goodbye(self, outcome: Outcome) -> None:
+    def _say_goodbye(self) -> None:
         """Tell the station, and give it a few chances to say that it heard."""
-        self.catch_up()
+        outcome = self._gateway.stop(EndReason.FAILED)
+        self._recorder.flush()
         for _ in range(END_TRIES):
             self.send([self._gateway.end(outcome.reason)])
             if self.listen_for(lambda: self._gateway.station_end is not None):
                 return
+
+
+def _datagrams(frames: Sequence[bytes]) -> Iterator[bytes]:
+    """The frames in as few pieces as every path carries."""
+    piece = b""
+    for frame in frames:
+        if piece and len(piece) + len(frame) > LARGEST_DATAGRAM:
+            yield piece
+            piece = b""
+        piece += frame
+    yield piece

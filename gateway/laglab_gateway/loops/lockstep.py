@@ -1,35 +1,24 @@
-"""The gateway's loop in simulation time: no tick passes without the station's command for it."""
-
-from collections.abc import Callable
+"""Lock-step: tick k goes on when the station has answered it."""
 
 from laglab_gateway.core import Gateway
-from laglab_gateway.loops.conversation import Conversation, Link, Patience
-from laglab_gateway.loops.watch import Watch
-from laglab_gateway.record.recorder import Recorder
-from laglab_gateway.side import Outcome
+from laglab_gateway.loops.conversation import Conversation
+from laglab_gateway.loops.surroundings import Served, Surroundings
 from laglab_protocol import EndReason
 
 
-def serve_lockstep(
-    gateway: Gateway,
-    endpoint: Link,
-    recorder: Recorder,
-    patience: Patience,
-    progress: Callable[[int], None],
-    watch: Watch | None = None,
-) -> Outcome:
-    """Run a gateway to its last tick; `progress` is told of each tick that is over.
-
-    Those who `watch` are looked after meanwhile.
+def serve_lockstep(gateway: Gateway, around: Surroundings) -> Served:
+    """Run a gateway to its last tick.
 
     Ctrl-C ends the run in order: the station is told and the outcome says INTERRUPTED.
 
     Raises:
         StationSilentError: the station never came, or fell silent.
+        SettingsError: the station ticks at another pace.
         EndpointError: the link itself broke.
+        TraceError: what happened could not be kept.
     """
-    conversation = Conversation(gateway, endpoint, recorder, patience, watch=watch)
-    try:
+    conversation = Conversation(gateway, around)
+    with conversation.run():
         conversation.wait_for_station()
         while gateway.outcome is None:
             conversation.send(gateway.open_tick())
@@ -39,11 +28,8 @@ def serve_lockstep(
             _await_answer(gateway, conversation)
             if gateway.immediate:
                 gateway.settle()
-            progress(conversation.finish_tick())
-    except KeyboardInterrupt:
-        gateway.outcome = Outcome(EndReason.INTERRUPTED, gateway.tick)
-    conversation.say_goodbye(gateway.outcome)
-    return gateway.outcome
+            conversation.finish_tick()
+    return Served(gateway.stop(EndReason.FAILED), gateway.audit.report(), None)
 
 
 def _await_answer(gateway: Gateway, conversation: Conversation) -> None:

@@ -1,17 +1,27 @@
 """The gateway's loop on the clock of a real robot: ticks happen when the robot says so."""
 
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from select import select
 from time import monotonic
 
-from laglab_gateway.errors import RobotSilentError
-from laglab_gateway.loops.conversation import END_TRIES, Conversation, Patience
-from laglab_gateway.loops.watch import Watch
-from laglab_gateway.record.recorder import Recorder
-from laglab_gateway.relay import Relay
-from laglab_gateway.side import Outcome
-from laglab_protocol import Endpoint, EndReason, Frame, Silence
+from laglab_gateway.errors import PlantSilentError
+from laglab_gateway.loops.conversation import END_TRIES, Conversation
+from laglab_gateway.loops.surroundings import Patience, Served, Surroundings
+from laglab_gateway.relay import Relay, from_robot
+from laglab_protocol import (
+    Endpoint,
+    EndpointError,
+    EndReason,
+    Frame,
+    Listener,
+    Receiver,
+    differences,
+    refuse_other_sample_time,
+)
+
+GREETED_AGAIN = 0.3
+"""[s] A robot that says nothing for so long may have begun again, and wait to be greeted."""
 
 
 class RobotLine:
@@ -21,48 +31,77 @@ class RobotLine:
         self._relay = relay
         self._endpoint = endpoint
         self._patience = patience
-        self._silence = Silence(endpoint.datagrams)
-        self._heard = monotonic()
+        self._listener = Listener(endpoint, Receiver())
+        self._heard = self._greeted = monotonic()
+
+    @contextmanager
+    def run(self) -> Iterator[None]:
+        """However the run ends within, the robot is stopped."""
+        try:
+            yield
+        except KeyboardInterrupt:
+            self._say_goodbye(EndReason.INTERRUPTED)
+            raise
+        except BaseException:
+            with suppress(EndpointError):
+                self._say_goodbye(EndReason.FAILED)
+            raise
+        self._say_goodbye(EndReason.FAILED)
 
     def start(self) -> None:
         """The run begins; what the robot said before is forgotten."""
-        while self._endpoint.receive(0.0):
-            pass
+        self._listener.forget()
         self._heard = monotonic()
         self.greet()
 
     def greet(self) -> None:
         """Make a robot begin that does not tick yet."""
+        self._greeted = monotonic()
         self._endpoint.send(self._relay.greeting())
+
+    def greet_if_silent(self) -> None:
+        """As long as it does not tick, now and then."""
+        if monotonic() - max(self._heard, self._greeted) > GREETED_AGAIN:
+            self.greet()
 
     def ticks(self) -> Iterator[None]:
         """Each tick of the robot that begins with what has arrived."""
         for frame in self._listen(0.0):
-            if self._relay.hear(frame):
+            if self._relay.hear_robot(frame):
                 self._heard = monotonic()
                 yield
 
     def _listen(self, timeout: float) -> list[Frame]:
-        data = self._endpoint.receive(timeout)
-        frames = self._relay.receive_from_robot(data, whole=self._silence.after(data))
+        frames = [frame for frame in self._listener.listen(timeout) if from_robot(frame)]
         if frames:
             self._endpoint.accept_peer()
         return frames
 
     def check_silence(self) -> None:
-        """Raises RobotSilentError when the last tick was longer ago than allowed."""
+        """Raises PlantSilentError when the last tick was longer ago than allowed."""
         silence = monotonic() - self._heard
         if silence > self._patience.robot_silence:
             since = self._relay.tick if self._relay.under_way else None
-            raise RobotSilentError(self._endpoint.name, since, silence)
+            raise PlantSilentError(self._endpoint.name, since, silence)
+
+    def compare_settings(self) -> str:
+        """What the robot was told differently. Raises SettingsError when it ticks at another
+        pace."""
+        robot = self._relay.robot_settings
+        if robot is None:
+            return "the robot does not tell its settings: nothing to compare with ours"
+        refuse_other_sample_time(robot, self._relay.told_robot)
+        said = differences(robot, self._relay.told_robot)
+        return f"the robot was told different things: {said}" if said else ""
 
     def forward(self) -> None:
         """Send what the robot is to have now."""
         if frames := self._relay.forward():
             self._endpoint.send(b"".join(frames))
 
-    def say_goodbye(self, reason: EndReason) -> None:
+    def _say_goodbye(self, reason: EndReason) -> None:
         """Stop the robot, and give it a few chances to say that it heard."""
+        reason = self._relay.stop(reason).reason
         for _ in range(END_TRIES):
             self._endpoint.send(self._relay.end_of_robot(reason))
             if self._relay.robot_end is None:
@@ -74,62 +113,49 @@ class RobotLine:
         deadline = monotonic() + self._patience.repeat_after
         while self._relay.robot_end is None and (left := deadline - monotonic()) > 0:
             for frame in self._listen(left):
-                self._relay.hear(frame)
+                self._relay.hear_robot(frame)
 
 
-def serve_remote(
-    relay: Relay,
-    robot: Endpoint,
-    station: Endpoint,
-    recorder: Recorder,
-    patience: Patience,
-    progress: Callable[[int], None],
-    watch: Watch | None = None,
-) -> Outcome:
-    """Relay between robot and station to the run's last tick; `progress` is told of each.
-    Those who `watch` are looked after meanwhile.
+def serve_remote(relay: Relay, robot: Endpoint, around: Surroundings) -> Served:
+    """Relay between robot and station to the run's last tick.
 
     However it ends, both sides are told, the robot first.
 
     Raises:
         StationSilentError: the station never came, or fell silent.
-        RobotSilentError: the robot does not speak our dialect, or fell silent.
+        PlantSilentError: the robot does not speak our dialect, or fell silent.
+        SettingsError: one of them ticks at another pace.
         EndpointError: one of the two links broke.
+        TraceError: what happened could not be kept.
     """
-    line = RobotLine(relay, robot, patience)
-    conversation = Conversation(relay, station, recorder, patience, watch=watch)
-    with ExitStack() as goodbyes:
-        goodbyes.callback(lambda: conversation.say_goodbye(_outcome(relay)))
-        goodbyes.callback(lambda: line.say_goodbye(_outcome(relay).reason))
-        try:
-            conversation.wait_for_station()
-            line.start()
-            while relay.outcome is None:
-                ready, _, _ = select([robot, station], [], [], patience.repeat_after)
-                if station in ready:
-                    conversation.listen(0.0)
-                if robot in ready:
-                    _relay_ticks(relay, line, conversation, progress)
-                elif not relay.under_way:
-                    line.greet()
-                line.forward()
-                line.check_silence()
-        except KeyboardInterrupt:
-            relay.outcome = Outcome(EndReason.INTERRUPTED, relay.tick)
-    return _outcome(relay)
-
-
-def _outcome(relay: Relay) -> Outcome:
-    """Without one, an error is on its way up."""
-    return relay.outcome or Outcome(EndReason.FAILED, relay.tick)
+    station = around.station.link
+    line = RobotLine(relay, robot, around.patience)
+    conversation = Conversation(relay, around)
+    with conversation.run(), line.run():
+        conversation.wait_for_station()
+        line.start()
+        while relay.outcome is None:
+            ready, _, _ = select([robot, station], [], [], around.patience.repeat_after)
+            if station in ready:
+                conversation.listen(0.0)
+            if robot in ready:
+                _relay_ticks(relay, line, conversation, around)
+            line.greet_if_silent()
+            line.forward()
+            line.check_silence()
+    timesync = relay.services.timesync
+    link = relay.audit.report(timesync.report() if timesync else None)
+    return Served(relay.stop(EndReason.FAILED), link, None)
 
 
 def _relay_ticks(
-    relay: Relay, line: RobotLine, conversation: Conversation, progress: Callable[[int], None]
+    relay: Relay, line: RobotLine, conversation: Conversation, around: Surroundings
 ) -> None:
     for _ in line.ticks():
         if relay.under_way:
-            progress(conversation.finish_tick())
+            conversation.finish_tick()
+        elif said := line.compare_settings():
+            around.warn(said)
         if relay.outcome is not None:
             return
         conversation.check_silence()

@@ -6,18 +6,20 @@ from time import monotonic_ns
 from typing import NamedTuple
 
 from laglab_gateway.services import RobotState, Services
-from laglab_protocol import Endpoint, EndpointError, Message, Receiver, Sender
+from laglab_protocol import EndpointError, Listener, Message, Sender
 
 POLL_US = 20_000
 """How often they are looked after; in between the loop is not held up for them."""
 
+MOST_AT_ONCE = 32
+"""Pieces of what one of them says that are looked at each time; the rest has to wait."""
+
 
 class Watcher(NamedTuple):
-    """One link, and who makes and reads the frames on it."""
+    """One link, and who makes the frames on it."""
 
-    endpoint: Endpoint
+    listener: Listener
     sender: Sender
-    receiver: Receiver
 
 
 class Watch:
@@ -50,7 +52,7 @@ class Watch:
         for watcher in self._watchers:
             with self._letting_go(watcher):
                 for message in messages:
-                    watcher.endpoint.send(watcher.sender.frame(message))
+                    watcher.listener.link.send(watcher.sender.frame(message))
 
     def take_lost(self) -> list[str]:
         """The links of those let go since the last call."""
@@ -63,16 +65,16 @@ class Watch:
             yield
         except EndpointError:
             self._watchers = [each for each in self._watchers if each is not watcher]
-            self._lost.append(watcher.endpoint.name)
+            self._lost.append(watcher.listener.link.name)
 
     def _hear(self, watcher: Watcher, state: RobotState) -> None:
-        endpoint, sender, receiver = watcher
-        while data := endpoint.receive(0.0):
-            frames = receiver.receive(data)
-            if endpoint.datagrams:
-                frames += receiver.end_datagram()
+        listener, sender = watcher
+        for _ in range(MOST_AT_ONCE):
+            frames = listener.listen(0.0)
+            if listener.idle:
+                return
             if frames:
-                endpoint.accept_peer()
+                listener.link.accept_peer()
             for frame in frames:
                 for message in self._services.answer(frame, state):
-                    endpoint.send(sender.frame(message))
+                    listener.link.send(sender.frame(message))

@@ -2,12 +2,59 @@
 
 from collections import Counter
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
+from msgspec import Struct
 
-from laglab_gateway.drive import Refusal
-from laglab_gateway.link.fates import Kind
+from laglab_gateway.drive import Rejection
+from laglab_gateway.link.fates import FateKind
+
+STOPS_KEPT = 100
+"""The first of them; how many there were is counted."""
+
+
+class DelayReport(Struct, frozen=True):
+    """Delays [ticks]; jitter is their standard deviation."""
+
+    min: int
+    mean: float
+    max: int
+    jitter: float
+
+
+class DirectionReport(Struct, frozen=True):
+    """One direction: the delay as configured and as measured [ticks], frames by what became of
+    them."""
+
+    configured: int
+    measured: DelayReport | None
+    arrived: int
+    lost: dict[str, int]
+    reordered: int
+
+
+class ClockReport(Struct, frozen=True):
+    """What TIMESYNC found: the station's clock less ours, and the way there and back [s]."""
+
+    offset_s: float
+    round_trip_p50_s: float
+    round_trip_p99_s: float
+    samples: int
+
+
+class LinkReport(Struct, frozen=True):
+    """Both directions, and what the robot refused or did by itself."""
+
+    command: DirectionReport
+    measurement: DirectionReport
+    refused: dict[str, int]
+    unanswered: int
+    """Ticks that were over before the station's answer to them had come."""
+    failsafe_stops: list[int]
+    """Ticks at which the failsafe began to stop the robot; of many, the first."""
+    stops: int
+    """How many there were."""
+    timesync: ClockReport | None = None
 
 
 @dataclass
@@ -16,7 +63,7 @@ class DirectionAudit:
 
     configured: int
     delays: Counter[int] = field(default_factory=Counter)
-    fates: Counter[Kind] = field(default_factory=Counter)
+    fates: Counter[FateKind] = field(default_factory=Counter)
     reordered: int = 0
     newest: int = -1
 
@@ -26,27 +73,19 @@ class DirectionAudit:
         self.reordered += stamp < self.newest
         self.newest = max(self.newest, stamp)
 
-    def report(self) -> dict[str, Any]:
-        """Delays in ticks (jitter: their standard deviation), counts of frames."""
-        delays = np.array(list(self.delays.elements()))
-        measured = (
-            {
-                "min": int(delays.min()),
-                "mean": float(delays.mean()),
-                "max": int(delays.max()),
-                "jitter": float(delays.std()),
-            }
-            if len(delays)
-            else None
-        )
-        lost = {kind.value: count for kind, count in self.fates.items() if kind != Kind.DELIVERED}
-        return {
-            "configured": self.configured,
-            "measured": measured,
-            "arrived": len(delays),
-            "lost": lost,
-            "reordered": self.reordered,
-        }
+    def report(self) -> DirectionReport:
+        """As it is now."""
+        lost = {kind.value: n for kind, n in self.fates.items() if kind != FateKind.DELIVERED}
+        arrived = self.delays.total()
+        return DirectionReport(self.configured, self._measured(), arrived, lost, self.reordered)
+
+    def _measured(self) -> DelayReport | None:
+        if not self.delays:
+            return None
+        delays, counts = np.array(list(self.delays.items()), dtype=np.float64).T
+        mean = float(np.average(delays, weights=counts))
+        jitter = float(np.sqrt(np.average((delays - mean) ** 2, weights=counts)))
+        return DelayReport(min(self.delays), mean, max(self.delays), jitter)
 
 
 @dataclass
@@ -55,18 +94,25 @@ class Audit:
 
     command: DirectionAudit
     measurement: DirectionAudit
-    refused: Counter[Refusal] = field(default_factory=Counter)
+    refused: Counter[Rejection] = field(default_factory=Counter)
     unanswered: int = 0
-    """Ticks that were over before the station's answer to them had come."""
-    stops: list[int] = field(default_factory=list)
-    """Ticks at which the failsafe began to stop the robot."""
+    stops: int = 0
+    first_stops: list[int] = field(default_factory=list)
 
-    def report(self) -> dict[str, Any]:
-        """For the summary."""
-        return {
-            "command": self.command.report(),
-            "measurement": self.measurement.report(),
-            "refused": {refusal.value: count for refusal, count in self.refused.items()},
-            "unanswered": self.unanswered,
-            "failsafe_stops": self.stops,
-        }
+    def stopped(self, tick: int) -> None:
+        """The failsafe began to stop the robot at `tick`."""
+        self.stops += 1
+        if len(self.first_stops) < STOPS_KEPT:
+            self.first_stops.append(tick)
+
+    def report(self, clocks: ClockReport | None = None) -> LinkReport:
+        """As it is now."""
+        return LinkReport(
+            command=self.command.report(),
+            measurement=self.measurement.report(),
+            refused={rejection.value: count for rejection, count in self.refused.items()},
+            unanswered=self.unanswered,
+            failsafe_stops=list(self.first_stops),
+            stops=self.stops,
+            timesync=clocks,
+        )

@@ -1,6 +1,8 @@
 """The trace: one row a tick, in numbers that read back to the same double."""
 
 import csv
+from collections.abc import Iterator, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
 
@@ -52,12 +54,40 @@ def read_trace(path: Path) -> Trace:
     Raises:
         TraceError: the file is missing, has other columns, or holds no row.
     """
+    pieces = list(trace_pieces(path))
+    return {name: np.concatenate([piece[name] for piece in pieces]) for name in TraceRow._fields}
+
+
+def trace_pieces(path: Path, rows: int = 20_000) -> Iterator[Trace]:
+    """A trace of any length, so many rows at a time; a last row that was cut short is left out.
+
+    Raises: TraceError, as `read_trace`.
+    """
     try:
         with path.open(newline="") as file:
-            header, *rows = csv.reader(file)
-            cells = [[float(cell or "nan") for cell in row] for row in rows]
+            lines = csv.reader(file)
+            if next(lines, None) != list(TraceRow._fields):
+                raise TraceError(f"{path} is not a trace: expected the columns {HEADER.strip()}")
+            empty = True
+            while piece := list(islice(lines, rows)):
+                if columns := _columns(piece):
+                    empty = False
+                    yield columns
     except (OSError, ValueError) as error:
         raise TraceError(f"{path} is not a readable trace: {error}") from error
-    if header != list(TraceRow._fields) or not cells:
-        raise TraceError(f"{path} is not a trace: expected the columns {HEADER.strip()} and rows")
-    return dict(zip(header, np.array(cells).T, strict=True))
+    if empty:
+        raise TraceError(f"{path} holds no row: the run ended before its first tick was over")
+
+
+def _columns(lines: list[list[str]]) -> Trace:
+    if len(lines[-1]) != len(TraceRow._fields):
+        del lines[-1]
+    cells = [[float(cell or "nan") for cell in line] for line in lines]
+    table = np.array(cells, dtype=np.float64).T
+    return dict(zip(TraceRow._fields, table, strict=True)) if cells else {}
+
+
+def trace_of(rows: Sequence[TraceRow]) -> Trace:
+    """The columns of these rows."""
+    table = np.array(rows, dtype=np.float64).reshape(-1, len(TraceRow._fields))
+    return dict(zip(TraceRow._fields, table.T, strict=True))

@@ -3,17 +3,15 @@
 For a free-running gateway only: where time is simulated there are no two clocks to compare.
 """
 
+from collections import deque
 from collections.abc import Callable
-from typing import NamedTuple
+from statistics import median
 
-from laglab_protocol import Message, Timesync
+from laglab_gateway.record.audit import ClockReport
+from laglab_protocol import Durations, Message, Timesync
 
-
-class Sample(NamedTuple):
-    """One measurement [ns]: the peer's clock minus ours, and the round trip."""
-
-    offset_ns: int
-    round_trip_ns: int
+OFFSETS_KEPT = 1000
+"""The last ones: clocks drift, so the older ones tell less."""
 
 
 class Timesyncing:
@@ -22,7 +20,8 @@ class Timesyncing:
     def __init__(self, clock: Callable[[], int]) -> None:
         self._clock = clock
         self._asked: int | None = None
-        self.samples: list[Sample] = []
+        self._offsets: deque[int] = deque(maxlen=OFFSETS_KEPT)
+        self._round_trips = Durations()
 
     def ask(self) -> Timesync:
         """The question; the answer to any earlier one no longer counts."""
@@ -36,7 +35,15 @@ class Timesyncing:
             return [Timesync(tc1=now_ns, ts1=message.ts1)]
         if message.ts1 == self._asked:
             self._asked = None
-            # The notes' offset is ours minus the peer's; the sign here is the peer's minus ours.
-            offset = message.tc1 - (message.ts1 + now_ns) // 2
-            self.samples.append(Sample(offset, now_ns - message.ts1))
+            # The peer's clock minus ours, if the way there takes as long as the way back.
+            self._offsets.append(message.tc1 - (message.ts1 + now_ns) // 2)
+            self._round_trips.add(now_ns - message.ts1)
         return []
+
+    def report(self) -> ClockReport | None:
+        """None without an answer."""
+        quantiles = self._round_trips.quantiles()
+        if quantiles is None:
+            return None
+        offset = median(self._offsets) * 1e-9
+        return ClockReport(offset, quantiles.p50, quantiles.p99, len(self._round_trips))

@@ -1,11 +1,16 @@
 """The narrow thing that every endpoint is."""
 
+from collections.abc import Hashable
 from types import TracebackType
 from typing import Protocol, Self
 
+Address = Hashable
+"""Whoever speaks from one place; only the endpoint that gave it can read it."""
 
-class Endpoint(Protocol):
-    """One end of a link. Any method may raise an EndpointError; none is safe across threads."""
+
+class Link(Protocol):
+    """What a talk needs of one end of a link. Any method may raise an EndpointError; none is safe
+    across threads."""
 
     @property
     def name(self) -> str:
@@ -16,14 +21,19 @@ class Endpoint(Protocol):
         """True when `receive` returns one datagram, False when it returns a piece of a stream."""
 
     @property
-    def loopback(self) -> bool:
-        """True when only programs on this machine can reach this endpoint."""
+    def sender(self) -> Address | None:
+        """Whom the last datagram came from; None where there is only one far end."""
+
+    @property
+    def peer(self) -> Address | None:
+        """Whom `send` sends to: None before anybody was accepted, or if there is one far end."""
 
     def fileno(self) -> int:
-        """A descriptor that is readable when `receive` would return at once."""
+        """A descriptor that is readable when `receive` would return at once; -1 if there is none,
+        for the far end is in this very process."""
 
-    def send(self, data: bytes) -> None:
-        """Send `data` as one datagram, or as it comes in a stream.
+    def send(self, data: bytes, to: Address | None = None) -> None:
+        """Send `data` as one datagram, or as it comes in a stream: to the peer, or to a `sender`.
 
         Dropped when nobody has been accepted yet (udpin). Raises FarEndGoneError or
         FarEndStalledError where the link can tell.
@@ -38,6 +48,17 @@ class Endpoint(Protocol):
         For udpin, which has no peer of its own: call it when that datagram held a frame that you
         accept, so that a stranger's garbage cannot take the link. Nothing happens elsewhere.
         """
+
+    def reopen(self) -> None:
+        """After FarEndGoneError: open the same again. Raises the EndpointError tree."""
+
+
+class Endpoint(Link, Protocol):
+    """One end of a link that was opened, and is to be closed."""
+
+    @property
+    def loopback(self) -> bool:
+        """True when only programs on this machine can reach this endpoint."""
 
     def close(self) -> None:
         """Give everything back. May be called twice."""

@@ -11,7 +11,7 @@ from laglab_protocol.endpoints.wire import Wire
 from laglab_protocol.errors import PortBusyError
 
 
-class Direction:
+class Lane:
     """From the program at one port to the program at the other."""
 
     def __init__(self, source: Pty, destination: Pty, baud: int) -> None:
@@ -51,7 +51,7 @@ class SerialPair:
         with ExitStack() as stack:
             first, second = (stack.enter_context(Pty(path)) for path in (path_1, path_2))
             self._ports = stack.pop_all()
-        self.directions = (Direction(first, second, baud), Direction(second, first, baud))
+        self.lanes = (Lane(first, second, baud), Lane(second, first, baud))
 
     def carry(self) -> None:
         """Carry bytes both ways until interrupted."""
@@ -60,15 +60,15 @@ class SerialPair:
 
     def carry_once(self, timeout: float | None) -> None:
         """Wait for the next bytes to come or to arrive, at most `timeout` [s], and pass them on."""
-        reports = [direction.wire.next_report() for direction in self.directions]
+        reports = [lane.wire.next_report() for lane in self.lanes]
         waits = [max(due - monotonic(), 0.0) for due in reports if due is not None]
-        with_room = {each.source: each for each in self.directions if each.wire.room}
+        with_room = {each.source: each for each in self.lanes if each.wire.room}
         limits = [*waits, *([] if timeout is None else [timeout])]
         ready, _, _ = select.select(with_room, [], [], min(limits, default=None))
         for port in ready:
             with_room[port].take_in()
-        for direction in self.directions:
-            direction.give_out()
+        for lane in self.lanes:
+            lane.give_out()
 
     def close(self) -> None:
         """Pull the cable: who holds a port is told that the far end is gone."""

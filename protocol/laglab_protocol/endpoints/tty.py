@@ -3,6 +3,7 @@
 import contextlib
 import os
 import select
+import stat
 import tty
 from abc import ABC, abstractmethod
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import Self
 
 import serial
 
+from laglab_protocol.endpoints.interface import Address
 from laglab_protocol.endpoints.waiting import first_bytes, writable
 from laglab_protocol.errors import (
     FarEndGoneError,
@@ -29,9 +31,14 @@ class _Tty(ABC):
 
     datagrams = False
     loopback = True
+    sender = None
+    peer = None
 
     def __init__(self, name: str, descriptor: int) -> None:
         self.name = name
+        self._hold(descriptor)
+
+    def _hold(self, descriptor: int) -> None:
         self._descriptor = descriptor
         self._line = select.poll()
         self._line.register(descriptor, select.POLLHUP)
@@ -57,7 +64,8 @@ class _Tty(ABC):
             raise self._gone("hung up")
         return data or None  # where VMIN is 0, as pyserial sets it, silence is a read of no bytes
 
-    def send(self, data: bytes) -> None:
+    def send(self, data: bytes, to: Address | None = None) -> None:
+        del to  # there is only one far end
         while data:
             try:
                 data = data[os.write(self._descriptor, data) :]
@@ -97,17 +105,47 @@ class SerialPort(_Tty):
     """A serial port, or the path of somebody's pty. Held exclusively: two readers share bytes."""
 
     def __init__(self, device: str, baud: int) -> None:
-        name = f"serial://{device}:{baud}"
-        if not Path(device).exists():
-            raise NoSuchPortError(f"{name}: no such port {device}: see which ports /dev has")
-        try:
-            self._port = serial.Serial(device, baud, timeout=0, exclusive=True)
-        except (serial.SerialException, OSError, ValueError) as error:
-            raise _cannot_open(name, error) from error
-        super().__init__(name, self._port.fileno())
+        self._device, self._baud = device, baud
+        self._port = _open_port(device, baud)
+        self._plug = _plug(device)
+        super().__init__(_spelled(device, baud), self._port.fileno())
+
+    def reopen(self) -> None:
+        """The number of a pty that is gone is given to the next program that makes one, so a pty
+        counts as plugged in again only where its link was made anew."""
+        self._port.close()
+        plug = _plug(self._device)
+        if plug == self._plug and os.path.realpath(self._device).startswith("/dev/pts/"):
+            raise NoSuchPortError(f"{self.name}: nobody has made {self._device} again")
+        self._port = _open_port(self._device, self._baud)
+        self._plug = plug
+        self._hold(self._port.fileno())
 
     def close(self) -> None:
         self._port.close()
+
+
+def _plug(device: str) -> tuple[int, int] | None:
+    """Tells one link of that name from the next; None when there is none."""
+    try:
+        found = os.lstat(device)
+    except OSError:
+        return None
+    return (found.st_ino, found.st_ctime_ns) if stat.S_ISLNK(found.st_mode) else (0, 0)
+
+
+def _spelled(device: str, baud: int) -> str:
+    return f"serial://{device}:{baud}"
+
+
+def _open_port(device: str, baud: int) -> serial.Serial:
+    name = _spelled(device, baud)
+    if not Path(device).exists():
+        raise NoSuchPortError(f"{name}: no such port {device}: see which ports /dev has")
+    try:
+        return serial.Serial(device, baud, timeout=0, exclusive=True)
+    except (serial.SerialException, OSError, ValueError) as error:
+        raise _cannot_open(name, error) from error
 
 
 class Pty(_Tty):
@@ -130,6 +168,9 @@ class Pty(_Tty):
                 f"pty://{path}: cannot make the link: {error.strerror}: choose another path"
             ) from error
         super().__init__(f"pty://{path}", master)
+
+    def reopen(self) -> None:
+        return  # it is ours: its far end may come and go
 
     def close(self) -> None:
         if self._link is None:

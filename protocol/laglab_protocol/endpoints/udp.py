@@ -6,6 +6,7 @@ from abc import ABC, abstractmethod
 from types import TracebackType
 from typing import Any, Self
 
+from laglab_protocol.endpoints.interface import Address
 from laglab_protocol.endpoints.waiting import first_bytes
 from laglab_protocol.errors import EndpointError, NoSuchPortError, PortBusyError
 
@@ -14,6 +15,8 @@ LARGEST_DATAGRAM = 65535
 
 class _Udp(ABC):
     datagrams = True
+    sender: Address | None = None
+    peer: Address | None = None
 
     def __init__(self, scheme: str, host: str, port: int) -> None:
         self._scheme = scheme
@@ -36,6 +39,9 @@ class _Udp(ABC):
 
     def accept_peer(self) -> None:
         return
+
+    def reopen(self) -> None:
+        return  # a socket outlives whoever is at the far end
 
     def receive(self, timeout: float) -> bytes:
         return first_bytes(self._read, self._socket.fileno(), timeout)
@@ -61,8 +67,6 @@ class UdpIn(_Udp):
 
     def __init__(self, host: str, port: int) -> None:
         super().__init__("udpin", host, port)
-        self._last_sender: Any = None
-        self._peer: Any = None
         try:
             self._socket.bind(self._address)
         except OSError as error:
@@ -70,24 +74,24 @@ class UdpIn(_Udp):
             raise _cannot("bind", self.name, error) from error
         self._address = self._socket.getsockname()
 
-    def send(self, data: bytes) -> None:
-        if self._peer is not None:
+    def send(self, data: bytes, to: Address | None = None) -> None:
+        address: Any = to or self.peer
+        if address is not None:
             try:
-                self._socket.sendto(data, self._peer)
+                self._socket.sendto(data, address)
             except OSError as error:
-                raise _cannot(
-                    f"send to {self._peer[0]}:{self._peer[1]} from", self.name, error
-                ) from (error)
+                where = f"{address[0]}:{address[1]}"
+                raise _cannot(f"send to {where} from", self.name, error) from error
 
     def _read(self) -> bytes | None:
         try:
-            data, self._last_sender = self._socket.recvfrom(LARGEST_DATAGRAM, socket.MSG_DONTWAIT)
+            data, self.sender = self._socket.recvfrom(LARGEST_DATAGRAM, socket.MSG_DONTWAIT)
         except BlockingIOError:
             return None
         return data
 
     def accept_peer(self) -> None:
-        self._peer = self._last_sender
+        self.peer = self.sender
 
 
 class UdpOut(_Udp):
@@ -101,7 +105,8 @@ class UdpOut(_Udp):
             self._socket.close()
             raise _cannot("reach", self.name, error) from error
 
-    def send(self, data: bytes) -> None:
+    def send(self, data: bytes, to: Address | None = None) -> None:
+        del to  # there is only one far end
         try:
             self._socket.send(data)
         except ConnectionRefusedError:

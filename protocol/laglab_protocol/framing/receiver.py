@@ -59,10 +59,12 @@ class Receiver:
             _by_peer(self._late),
         )
 
-    def receive(self, data: bytes) -> list[Frame]:
+    def receive(self, data: bytes, whole: bool = False) -> list[Frame]:
         """The frames that `data`, after the bytes received before, completes.
 
-        At most one unfinished frame is kept: under 300 bytes.
+        `whole`: no frame goes on after it, for it is a datagram, or a silence follows that is
+        longer than a frame takes; an unfinished frame is given up, and what its start byte hid is
+        found. Otherwise at most one unfinished frame is kept: under 300 bytes.
         """
         buffer = self._rest + data if self._rest else data
         self._rest = b""
@@ -89,13 +91,12 @@ class Receiver:
             else:
                 position = self._pass_over(found, buffer, position)
         self._frames += len(frames)
+        if whole and self._rest:
+            frames += self._given_up()
         return frames
 
-    def end_datagram(self) -> list[Frame]:
-        """Give up on an unfinished frame: it was none. Returns those found after its start byte.
-
-        To be called after each datagram; on a stream, after a silence longer than a frame takes.
-        """
+    def _given_up(self) -> list[Frame]:
+        """The frames behind the start byte of what was none."""
         frames: list[Frame] = []
         while self._rest:
             self._refused[Refusal.INCOMPLETE] += 1
@@ -121,6 +122,11 @@ class Receiver:
         if gap:
             self._lost[peer] += gap
         self._expected[peer] = (sequence + 1) & 0xFF
+
+
+def frames_in(datagram: bytes) -> list[Frame]:
+    """All the frames in one datagram that are not signed."""
+    return Receiver().receive(datagram, whole=True)
 
 
 def _by_peer(counts: Counter[int]) -> dict[Peer, int]:

@@ -4,6 +4,7 @@ They are written out, so that a type checker knows their fields; every other mes
 is had by `message_type("NAME")`.
 """
 
+import math
 from enum import IntEnum
 
 from msgspec import defstruct
@@ -19,6 +20,11 @@ NO_COMMAND = -1
 UNANNOUNCED = 256
 """More frames than LAGLAB_TICK or LAGLAB_COMMAND can announce: so many are never asked for."""
 
+DIALECT_VERSION = 2
+"""As the dialect's XML has it."""
+
+UNKNOWN_DELAY = 65535
+
 ROBOT_SYSTEM, ROBOT_COMPONENT = 1, 1
 STATION_SYSTEM, STATION_COMPONENT = 200, 190
 
@@ -30,6 +36,7 @@ class EndReason(IntEnum):
     DIVERGED = 1
     INTERRUPTED = 2
     FAILED = 3
+    DISPLACED = 4
 
 
 class Tick(Message, frozen=True):
@@ -104,12 +111,27 @@ class End(Message, frozen=True):
     reason: int
 
 
+class Settings(Message, frozen=True):
+    """Either side: what it was told of the run [s, m, m/s, rad/s, ticks]; NaN and 65535: not known,
+    an infinite limit: none."""
+
+    sample_time: float
+    wheel_radius: float = math.nan
+    track: float = math.nan
+    v_max: float = math.nan
+    omega_max: float = math.nan
+    command_delay: int = UNKNOWN_DELAY
+    measurement_delay: int = UNKNOWN_DELAY
+    dialect: int = DIALECT_VERSION
+
+
 WRITTEN_OUT: dict[str, type[Message]] = {
     "LAGLAB_TICK": Tick,
     "LAGLAB_MEASUREMENT": Measurement,
     "LAGLAB_COMMAND": Command,
     "LAGLAB_ESTIMATE": Estimate,
     "LAGLAB_END": End,
+    "LAGLAB_SETTINGS": Settings,
     **STANDARD,
 }
 

@@ -12,8 +12,8 @@ import tty
 from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
-from multiprocessing.connection import Connection
 from pathlib import Path
+from queue import Queue
 from time import perf_counter
 from typing import Any
 
@@ -22,9 +22,10 @@ import numpy as np
 from fmpy.fmi2 import FMU2Slave
 
 from laglab.errors import RunError
-from laglab.run.processes import Listening, Progress, started
-from laglab.run.robot_side import robot_parameters
-from laglab.run.station_side import station_config
+from laglab.runs.child import Inbox, Tell, started
+from laglab.runs.reports import Listening, Order, Progress
+from laglab.runs.robot_side import robot_parameters
+from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario
 from laglab_control import Controller, Echo, Measured
 from laglab_fmu import fmu_path
@@ -38,35 +39,37 @@ INPUTS = ("omega_left", "omega_right")
 
 def seconds_per_tick(transport: str, scenario: Scenario, directory: Path) -> float:
     """Wall time [s] of one tick, over the scenario's whole run; fills `directory`."""
-    with started("robot", robot_process, scenario, transport, directory) as robot:
-        match robot.next_report():
-            case Listening(address):
-                pass
-            case report:
-                raise RunError(f"the loop by hand over {transport} did not start: {report}")
-        with started("station", station_process, scenario, address):
-            match robot.next_report():
-                case Progress(tick, seconds):
-                    return seconds / tick
-                case report:
-                    raise RunError(f"the loop by hand over {transport} ended early: {report}")
+    told = scenario.to_toml()
+    inbox: Inbox = Queue()
+    order = Order(told, transport, str(directory))
+    with started("robot", "laglab.bench.by_hand:robot_process", order, inbox):
+        first = inbox.get().report
+        if not isinstance(first, Listening):
+            raise RunError(f"the loop by hand over {transport} did not start: {first}")
+        order = Order(told, first.address)
+        with started("station", "laglab.bench.by_hand:station_process", order, inbox):
+            last = inbox.get().report
+            if not isinstance(last, Progress):
+                raise RunError(f"the loop by hand over {transport} ended early: {last}")
+            return last.loop_seconds / last.tick
 
 
-def robot_process(scenario: Scenario, transport: str, directory: Path, reports: Connection) -> None:
+def robot_process(order: Order, tell: Tell) -> None:
     """Listens, drives to the last tick, and reports how long that took."""
     mavutil = _mavutil()
+    scenario, directory = Scenario.from_toml(order.scenario), Path(order.directory)
     with (
-        _robot_link(mavutil, transport) as (link, address),
+        _robot_link(mavutil, order.url) as (link, address),
         _fmu(scenario, directory / "fmu") as (fmu, references),
         (directory / TRACE_FILE).open("w", newline="") as file,
     ):
         trace = csv.writer(file)
         trace.writerow(TraceRow._fields)
-        reports.send(Listening(address))
+        tell(Listening(address))
         link.recv_match(type="HEARTBEAT", blocking=True)
         began = perf_counter()
         _drive(scenario, link, fmu, references, trace)
-        reports.send(Progress(scenario.last_tick, perf_counter() - began))
+        tell(Progress(int(scenario.last_tick), perf_counter() - began))
 
 
 def _drive(
@@ -103,11 +106,12 @@ def _drive(
         fmu.doStep(currentCommunicationPoint=k * Ts, communicationStepSize=Ts)
 
 
-def station_process(scenario: Scenario, address: str, _: Connection) -> None:
+def station_process(order: Order, _: Tell) -> None:
     """Answers every tick up to the last."""
     mavutil = _mavutil()
+    scenario = Scenario.from_toml(order.scenario)
     link = mavutil.mavlink_connection(
-        address,
+        order.url,
         baud=57600,
         source_system=STATION_SYSTEM,
         source_component=STATION_COMPONENT,

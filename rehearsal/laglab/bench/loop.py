@@ -8,15 +8,16 @@ import tempfile
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from statistics import median
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from rich.table import Table
 
 from laglab.bench import by_hand
 from laglab.bench.round_trip import seconds_per_echo, tick_sizes
 from laglab.errors import RunError
-from laglab.run.rehearse import Transport, rehearse
+from laglab.runs.rehearse import Transport, rehearse_apart
 from laglab.scenario import Scenario, load
+from laglab_gateway import TimingReport
 
 TRANSPORTS: tuple[Transport, ...] = ("udp", "serial")
 ESTIMATORS = ("popf", "raw")
@@ -79,21 +80,20 @@ def _one_round(transport: Transport, estimator: str, ticks: int) -> Times:
 
 def _seconds_per_tick(transport: Transport, scenario: Scenario, directory: Path) -> float:
     """As `laglab run` runs it, from its first tick to its last."""
-    ending = rehearse(scenario, transport, directory, lambda _: None)
+    ending = rehearse_apart(scenario, transport, directory)
     if ending.outcome is None:
         raise RunError(f"the loop over {transport} ended early: {ending.problem}")
     return ending.loop_seconds / scenario.last_tick
 
 
-def measure_lateness(seconds: float) -> dict[str, Any]:
-    """Of the ticks of `laglab run lab --pace realtime` over UDP, in the summary's terms."""
+def measure_lateness(seconds: float) -> TimingReport:
+    """Of the ticks of `laglab run lab --pace realtime` over UDP."""
     scenario = load("lab", {"pace": "realtime", "duration": seconds})
     with tempfile.TemporaryDirectory(prefix="laglab-bench-") as folder:
-        ending = rehearse(scenario, "udp", Path(folder), lambda _: None)
-    if ending.outcome is None:
+        ending = rehearse_apart(scenario, "udp", Path(folder))
+    if ending.timing is None:
         raise RunError(f"the real-time loop ended early: {ending.problem}")
-    timing: dict[str, Any] = ending.statistics["timing"]
-    return timing
+    return ending.timing
 
 
 COLUMNS = (*WAYS, "× real time", "× by hand", "echoes")
@@ -120,10 +120,10 @@ def times_table(measured: dict[Case, list[Times]]) -> Table:
     return table
 
 
-def lateness_line(timing: dict[str, Any]) -> str:
+def lateness_line(timing: TimingReport) -> str:
     """How late the ticks of a real-time run began."""
-    p50, p99, most = (1e3 * timing[key] for key in ("p50_s", "p99_s", "max_s"))
+    p50, p99, most = (1e3 * each for each in (timing.p50_s, timing.p99_s, timing.max_s))
     return (
         f"real time, late by: p50 {p50:.3f} ms, p99 {p99:.3f} ms, max {most:.3f} ms; "
-        f"deadlines missed: {timing['missed_deadlines']}"
+        f"deadlines missed: {timing.missed_deadlines}"
     )

@@ -4,23 +4,34 @@ import os
 import socket
 import tty
 from collections.abc import Callable
-from multiprocessing.connection import Connection
+from queue import Queue
 from time import perf_counter
-from typing import NamedTuple
 
-from laglab.run.processes import started
+from msgspec import Struct
+
+from laglab.runs.child import Tell, started
 from laglab_protocol import Command, Estimate, Measurement, Message, Sender, Tick
 
 POSE = (0.1, 0.1, 0.1)
 COVARIANCE = (0.1, 0.1, 0.1, 0.1, 0.1, 0.1)
 """Any doubles whose last byte is not zero, so that no frame is cut short."""
 
+
+class EchoOrder(Struct, frozen=True):
+    """Whom to answer, and how often."""
+
+    address: str
+    port: int
+    sizes: "Sizes"
+    ticks: int
+
+
 Send = Callable[[bytes], object]
 Receive = Callable[[int], bytes]
 """At most so many bytes."""
 
 
-class Sizes(NamedTuple):
+class Sizes(Struct, frozen=True):
     """Bytes that go each way in a tick."""
 
     to_station: int
@@ -49,24 +60,28 @@ def seconds_per_echo(transport: str, sizes: Sizes, ticks: int) -> float:
 def _over_udp(sizes: Sizes, ticks: int) -> float:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as robot:
         robot.bind(("127.0.0.1", 0))
-        with started("echo", _udp_station, robot.getsockname(), sizes, ticks):
+        host, port = robot.getsockname()
+        order = EchoOrder(host, port, sizes, ticks)
+        with started("echo", "laglab.bench.round_trip:udp_station", order, Queue()):
             _, station = robot.recvfrom(1)
             robot.connect(station)
             return _call(robot.send, robot.recv, sizes, ticks)
 
 
-def _udp_station(address: tuple[str, int], sizes: Sizes, ticks: int, _: Connection) -> None:
+def udp_station(order: EchoOrder, _: Tell) -> None:
+    """Answers over a socket."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as station:
-        station.connect(address)
+        station.connect((order.address, order.port))
         station.send(b"?")
-        _answer(station.send, station.recv, sizes, ticks)
+        _answer(station.send, station.recv, order)
 
 
 def _over_pty(sizes: Sizes, ticks: int) -> float:
     robot, slave = os.openpty()
     tty.setraw(slave)
     try:
-        with started("echo", _pty_station, os.ttyname(slave), sizes, ticks):
+        order = EchoOrder(os.ttyname(slave), 0, sizes, ticks)
+        with started("echo", "laglab.bench.round_trip:pty_station", order, Queue()):
             os.read(robot, 1)
             return _call(
                 lambda data: os.write(robot, data), lambda size: os.read(robot, size), sizes, ticks
@@ -76,10 +91,11 @@ def _over_pty(sizes: Sizes, ticks: int) -> float:
         os.close(slave)
 
 
-def _pty_station(path: str, sizes: Sizes, ticks: int, _: Connection) -> None:
-    station = os.open(path, os.O_RDWR | os.O_NOCTTY)
+def pty_station(order: EchoOrder, _: Tell) -> None:
+    """Answers over a terminal."""
+    station = os.open(order.address, os.O_RDWR | os.O_NOCTTY)
     os.write(station, b"?")
-    _answer(lambda data: os.write(station, data), lambda size: os.read(station, size), sizes, ticks)
+    _answer(lambda data: os.write(station, data), lambda size: os.read(station, size), order)
     os.close(station)
 
 
@@ -92,10 +108,10 @@ def _call(send: Send, receive: Receive, sizes: Sizes, ticks: int) -> float:
     return (perf_counter() - began) / ticks
 
 
-def _answer(send: Send, receive: Receive, sizes: Sizes, ticks: int) -> None:
-    answer = bytes(sizes.to_robot)
-    for _ in range(ticks):
-        _whole(receive, sizes.to_station)
+def _answer(send: Send, receive: Receive, order: EchoOrder) -> None:
+    answer = bytes(order.sizes.to_robot)
+    for _ in range(order.ticks):
+        _whole(receive, order.sizes.to_station)
         send(answer)
 
 

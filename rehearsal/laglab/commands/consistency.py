@@ -8,9 +8,9 @@ import typer
 from rich.console import Console
 
 from laglab.commands.options import on_scenario
-from laglab.commands.run import progress_bar
 from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, require
+from laglab.progress import progress_bar
 from laglab.results.figure import save
 from laglab.scenario import Scenario
 from laglab.studies.consistency import samples, verdict

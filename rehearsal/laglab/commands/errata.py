@@ -6,8 +6,8 @@ import typer
 from rich.console import Console
 
 from laglab.commands.options import on_scenario
-from laglab.commands.run import progress_bar
 from laglab.extras import STEPPING, require
+from laglab.progress import progress_bar
 from laglab.scenario import Scenario
 from laglab.studies.errata import VARIANTS, costs, costs_table
 

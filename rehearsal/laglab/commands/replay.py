@@ -7,10 +7,12 @@ import typer
 from rich.console import Console
 
 from laglab.errors import ScenarioError
-from laglab.extras import REHEARSING, require
+from laglab.extras import DRAWING, require
 from laglab.results.figure import save
-from laglab.results.replaying import draw_replays, replay_session, replays_table, write_replays
-from laglab.run.rehearse import SCENARIO_FILE
+from laglab.results.place import made
+from laglab.results.replaying import draw_replays, replays_table
+from laglab.results.run import SCENARIO_FILE
+from laglab.results.shadows import collected, kept_rows, shadow_rows
 from laglab.scenario import load
 from laglab_gateway import TRACE_FILE, read_trace
 from laglab_station import read_session
@@ -41,17 +43,19 @@ def replay(
     ),
 ) -> None:
     """Estimate again from the log of a session, of the simulated or of a real robot."""
-    require(REHEARSING)
+    require(DRAWING)
     overrides = {} if p0 is None else {"initial_covariance": p0}
     told = load(scenario or str(tlog.parent / SCENARIO_FILE), overrides)
     session = list(read_session(tlog))
     if not session:
         raise ScenarioError(f"{tlog}: no tick of a robot in it")
-    replays = {name: replay_session(told, name, session) for name in estimators}
     trace_file = tlog.parent / TRACE_FILE
     trace = read_trace(trace_file) if trace_file.exists() else None
-    out.mkdir(parents=True, exist_ok=True)
-    write_replays(replays, out)
-    save(draw_replays(told, session, replays, trace), out / "replay.png")
+    asked = {name: shadow_rows(told, name, session) for name in estimators}
+    directory = made(out)
+    replays = {
+        name: collected(kept_rows(rows, directory / f"{name}.csv")) for name, rows in asked.items()
+    }
+    save(draw_replays(told, session, replays, trace), directory / "replay.png")
     Console().print(replays_table(replays, trace), crop=False, no_wrap=True)
     Console().print(f"results in {out}", highlight=False, soft_wrap=True)

@@ -23,9 +23,7 @@ def serial(
         try:
             pair.carry()
         except KeyboardInterrupt:
-            for way, names in zip(
-                pair.directions, ((path_1, path_2), (path_2, path_1)), strict=True
-            ):
+            for way, names in zip(pair.lanes, ((path_1, path_2), (path_2, path_1)), strict=True):
                 typer.echo(_report(*names, way.carried, way.overrun))
 
 

@@ -1,23 +1,26 @@
-"""`laglab gateway` and `laglab controller`: each side on its own."""
+"""`laglab gateway` and `laglab controller`: one side alone."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager
-from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.console import Console
 
 from laglab.commands.options import on_scenario
-from laglab.commands.run import EXIT_CODES, KeyOption, PlantOption, progress_bar
+from laglab.commands.run import ForceOption, KeyOption, OutOption, PlantOption
+from laglab.commands.verdict import conclude
 from laglab.extras import STEPPING, require
-from laglab.run.pauses import short_pauses
-from laglab.run.robot_side import Setup, open_robot
-from laglab.run.station_side import open_station
+from laglab.progress import progress_of
+from laglab.results.complete import Way
+from laglab.results.place import place
+from laglab.results.station_record import StationRecord
+from laglab.runs.alone import answer_alone, serve_alone
+from laglab.runs.robot_side import Setup, open_robot
+from laglab.runs.station_side import open_station
 from laglab.scenario import Scenario
-from laglab_gateway import FileRecorder, NoRecorder, Patience
-from laglab_protocol import Endpoint, EndReason, open_endpoint, refuse_open_door
-from laglab_station import run_station
+from laglab_gateway import FileRecorder, Patience, Surroundings
+from laglab_protocol import Endpoint, Listener, open_endpoint, refuse_open_door
 
 ENDPOINT_HELP = "udpin://HOST:PORT, udpout://HOST:PORT, serial:///dev/ttyX:BAUD or pty://PATH."
 
@@ -31,6 +34,14 @@ UnsignedOption = Annotated[
 ]
 
 
+def _say(text: str) -> None:
+    Console(stderr=True).print(text, highlight=False, soft_wrap=True)
+
+
+def _warn(text: str) -> None:
+    _say(f"warning: {text}")
+
+
 @on_scenario
 def gateway(
     scenario: Scenario,
@@ -41,10 +52,8 @@ def gateway(
         list[str] | None,
         typer.Option(metavar="URL", help="A ground station may look on there; may be repeated."),
     ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", metavar="DIR", help="Where trace.csv and robot.tlog go."),
-    ] = None,
+    out: OutOption = None,
+    force: ForceOption = False,
     plant: PlantOption = None,
     key: KeyOption = None,
     unsigned: UnsignedOption = False,
@@ -55,28 +64,28 @@ def gateway(
     """Be the robot's side of SCENARIO: wait for a controller, run to the end."""
     if plant is None:
         require(STEPPING)
-    console = Console(stderr=True)
     with (
-        open_robot(scenario, Setup(plant, key, not disarmed, unsigned)) as serve,
-        closing(FileRecorder(out) if out else NoRecorder()) as recorder,
+        open_robot(scenario, Setup(plant, key, not disarmed, unsigned)) as robot,
         open_endpoint(endpoint) as link,
         _opened(watch or []) as watched,
-        short_pauses(),
     ):
         for each in (link, *watched):
             refuse_open_door(each, key, unsigned)
-            console.print(f"listening on {each.name}", highlight=False, soft_wrap=True)
-        with progress_bar() as bar:
-            task = bar.add_task(scenario.name, total=scenario.last_tick)
-            outcome, _ = serve(
-                link,
+        directory = place(scenario, out, force)
+        for each in (link, *watched):
+            _say(f"listening on {each.name}")
+        with closing(FileRecorder(directory)) as recorder, progress_of(scenario) as told:
+            around = Surroundings(
+                Listener(link, robot.codec.receiver),
                 recorder,
                 Patience(silence=scenario.silence_timeout),
-                lambda tick: bar.update(task, completed=tick),
-                watched,
+                robot.watch(watched),
+                told,
+                _warn,
             )
-    console.print(f"{outcome.reason.name.lower()} at tick {outcome.tick}", highlight=False)
-    raise typer.Exit(EXIT_CODES[outcome.reason])
+            ending = serve_alone(robot, around)
+    way = Way("robot", link.name, plant or "fmu")
+    conclude(scenario, way, ending, directory)
 
 
 @contextmanager
@@ -91,19 +100,17 @@ def controller(
     endpoint: Annotated[
         str, typer.Option(metavar="URL", help=ENDPOINT_HELP)
     ] = "udpout://127.0.0.1:14550",
+    out: OutOption = None,
+    force: ForceOption = False,
     key: KeyOption = None,
 ) -> None:
     """Be the remote station of SCENARIO: stabilise the robot at the other end."""
-    with (
-        open_endpoint(endpoint) as link,
-        open_station(scenario, key) as station,
-        short_pauses(),
-    ):
-        typer.echo(f"calling {link.name}", err=True)
-        end = run_station(
-            station,
-            link,
-            scenario.silence_timeout,
-            warn=lambda text: typer.echo(f"warning: {text}", err=True),
-        )
-    raise typer.Exit(EXIT_CODES[EndReason(end.reason)])
+    with open_endpoint(endpoint) as link, open_station(scenario, key) as (station, receiver):
+        directory = place(scenario, out, force, suffix="-station")
+        _say(f"calling {link.name}: waiting for the robot")
+        with progress_of(scenario) as told:
+            record = StationRecord(directory, scenario.sample_time, _warn, told)
+            with closing(record):
+                listener = Listener(link, receiver)
+                ending = answer_alone(station, listener, scenario.silence_timeout, record)
+    conclude(scenario, Way("station", link.name, "unknown"), ending, directory)

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.errors import RunError
-from laglab.results.pose import is_measured, robot_pose
+from laglab.errors import ResultsError
+from laglab.results.numbers import (
+    deviation,
+    is_measured,
+    loop_estimates,
+    robot_pose,
+    shadow_estimates,
+)
 from laglab.scenario import Scenario
 from laglab_gateway import Trace
 
@@ -29,9 +36,15 @@ def empty_figure(width: float, height: float) -> Figure:
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def draw_run(trace: Trace, scenario: Scenario) -> Figure:
-    """Three panels as in Figs. 4 to 7: path in the plane, heading, speeds."""
-    return draw_side_by_side([(trace, scenario)])
+def draw(trace: Trace, scenario: Scenario) -> Figure:
+    """Three panels as in Figs. 4 to 7: path in the plane, heading, speeds; or as in Fig. 8, where
+    estimators are compared."""
+    if not scenario.compare:
+        return draw_side_by_side([(trace, scenario)])
+    deviations = {scenario.estimator: deviation(trace, loop_estimates(trace))}
+    for name in scenario.compare:
+        deviations[name] = deviation(trace, shadow_estimates(trace, name))
+    return draw_deviations(trace["time"], deviations, scenario)
 
 
 def draw_side_by_side(runs: Sequence[tuple[Trace, Scenario]]) -> Figure:
@@ -97,8 +110,8 @@ def draw_deviations(
     figure = empty_figure(13, 4)
     labels = ("x [m]", "y [m]", "θ [rad]")
     for axis, (axes, label) in enumerate(zip(figure.subplots(1, 3), labels, strict=True)):
-        for name, deviation in deviations.items():
-            axes.plot(time, deviation[:, axis], label=name)
+        for name, off in deviations.items():
+            axes.plot(time, off[:, axis], label=name)
         axes.axhline(0.0, color="grey", linestyle=":")
         axes.set(xlabel="t [s]", title=f"deviation in {label}")
         axes.legend()
@@ -108,8 +121,22 @@ def draw_deviations(
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write the figure as a PNG. Raises: RunError, when the file cannot be written."""
+    """Write the figure in the format that the name's ending says.
+
+    Raises: ResultsError, when there is no such format, or the file cannot be written.
+    """
+    known = figure.canvas.get_supported_filetypes()
+    if path.suffix[1:].lower() not in known:
+        raise ResultsError(f"cannot draw {path}: its name must end in one of {', '.join(known)}")
     try:
-        figure.savefig(path, format="png", dpi=DOTS_PER_INCH)
+        figure.savefig(path, dpi=DOTS_PER_INCH)
     except OSError as error:
-        raise RunError(f"cannot draw {path}: {error.strerror}") from error
+        raise ResultsError(f"cannot draw {path}: {error.strerror}") from error
+
+
+def save_figure(draw_it: Callable[[], Figure], directory: Path) -> bool:
+    """Draw a run's figure beside its other results; False where there is no matplotlib."""
+    if find_spec("matplotlib") is None:
+        return False
+    save(draw_it(), directory / FIGURE_FILE)
+    return True

@@ -1,66 +1,42 @@
-"""Estimating again from the log of a session."""
+"""Estimates from the log of a session, beside each other and beside the true poses where known."""
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.table import Table
 
-from laglab.errors import ScenarioError
 from laglab.results.figure import empty_figure
-from laglab.results.summary import deviation
-from laglab.run.station_side import station_config
+from laglab.results.numbers import deviation
+from laglab.results.shadows import Shadow
 from laglab.scenario import Scenario
-from laglab_control import ESTIMATORS
 from laglab_gateway import Trace
-from laglab_station import Heard, Shadow, shadow
+from laglab_station import SessionTick
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Replays = Mapping[str, Shadow]
-COLUMNS = ("tick", "x", "y", "theta", "p_xx", "p_xy", "p_xt", "p_yy", "p_yt", "p_tt")
 AXES = ("x [m]", "y [m]", "θ [rad]")
 
 
-def replay_session(scenario: Scenario, name: str, session: Sequence[Heard]) -> Shadow:
-    """What the named filter makes of the session, with the scenario's model and prior.
-
-    Raises: ScenarioError, when there is no such filter.
-    """
-    if name not in ESTIMATORS:
-        raise ScenarioError(f"--estimator: {name!r} is not one of {', '.join(ESTIMATORS)}")
-    config = station_config(scenario.model_copy(update={"estimator": name}))
-    return shadow(config, session)
-
-
-def write_replays(replays: Replays, directory: Path) -> None:
-    """One CSV file a filter, its numbers written so that they read back to the same doubles."""
-    for name, replayed in replays.items():
-        upper = replayed.covariances[:, *np.triu_indices(3)]
-        with (directory / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(COLUMNS)
-            for tick, x, P in zip(replayed.ticks, replayed.estimates, upper, strict=True):
-                writer.writerow([int(tick), *x.tolist(), *P.tolist()])
+def estimates(replayed: Shadow) -> NDArray[np.float64]:
+    """x̂, shape (ticks heard, 3)."""
+    return np.stack([replayed[axis] for axis in ("x", "y", "theta")], axis=1)
 
 
 def rms_deviation(replayed: Shadow, trace: Trace) -> list[float]:
     """Root mean square deviation from the true poses in x, y, θ; NaN where nothing was said."""
-    error = deviation(_at(trace, replayed), replayed.estimates)
+    rows = np.searchsorted(trace["tick"], replayed["tick"])
+    there = rows < len(trace["tick"])
+    true = {name: column[rows[there]] for name, column in trace.items()}
+    error = deviation(true, estimates(replayed)[there])
     if np.isnan(error).all():
         return [np.nan] * 3
     return [float(value) for value in np.sqrt(np.nanmean(error**2, axis=0))]
-
-
-def _at(trace: Trace, replayed: Shadow) -> Trace:
-    """The rows of the trace at the replay's ticks."""
-    rows = np.searchsorted(trace["tick"], replayed.ticks)
-    return {name: column[rows] for name, column in trace.items()}
 
 
 def replays_table(replays: Replays, trace: Trace | None) -> Table:
@@ -70,7 +46,7 @@ def replays_table(replays: Replays, trace: Trace | None) -> Table:
     for heading in headings + (["RMS deviation in x, y, θ"] if trace else []):
         table.add_column(heading, no_wrap=True)
     for name, replayed in replays.items():
-        cells = [name, str(len(replayed.ticks)), _spelled(replayed.estimates[-1])]
+        cells = [name, str(len(replayed["tick"])), _spelled(estimates(replayed)[-1].tolist())]
         table.add_row(*cells, *([_spelled(rms_deviation(replayed, trace))] if trace else []))
     return table
 
@@ -80,7 +56,7 @@ def _spelled(numbers: Sequence[float]) -> str:
 
 
 def draw_replays(
-    scenario: Scenario, session: Sequence[Heard], replays: Replays, trace: Trace | None
+    scenario: Scenario, session: Sequence[SessionTick], replays: Replays, trace: Trace | None
 ) -> Figure:
     """Each component over time: measurements, estimates and, where known, the true pose."""
     figure = empty_figure(13, 4)
@@ -91,7 +67,7 @@ def draw_replays(
         measured = [message.pose[i] for message in sampled]
         axes.plot(times, measured, ".", markersize=1, label="measured")
         for name, replayed in replays.items():
-            axes.plot(replayed.ticks * Ts, replayed.estimates[:, i], label=name)
+            axes.plot(replayed["tick"] * Ts, estimates(replayed)[:, i], label=name)
         if trace:
             pose = trace[("x", "y", "theta")[i]]
             axes.plot(trace["time"], pose, "k:", label="true")

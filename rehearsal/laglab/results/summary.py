@@ -1,133 +1,102 @@
-"""The verdict on a run, from its trace."""
+"""What a run tells of itself, as data: the contents of ``summary.json``."""
 
-import json
 from pathlib import Path
-from typing import Any
+from typing import Literal
 
-import numpy as np
-from numpy.typing import NDArray
+import msgspec
+from msgspec import Struct
 
-from laglab.results.pose import is_measured, robot_pose
-from laglab.run.rehearse import Ending, Transport
-from laglab.scenario import Scenario
-from laglab_control.angle import wrap
-from laglab_gateway import Trace
-from laglab_protocol import EndReason
+from laglab.errors import ResultsError
+from laglab_gateway import LinkReport, TimingReport
+from laglab_station import StationReport
 
 SUMMARY_FILE = "summary.json"
-DISTANCE_BOUND = 0.06
-HEADING_BOUND = 0.05
+SCHEMA_VERSION = 2
 
-Errors = dict[str, float]
-
-
-_wrapped = np.vectorize(wrap, otypes=[np.float64])
+Side = Literal["both", "robot", "station"]
+Seen = Literal["true", "measured"]
+"""Whether the robot's pose is known, or only as its sensor saw it."""
 
 
-def goal_errors(
-    pose: NDArray[np.float64], scenario: Scenario
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Distance to the goal ρ [m] and heading error [rad] of poses, shape (n, 3)."""
-    x, y, theta = scenario.goal
-    rho = np.hypot(pose[:, 0] - x, pose[:, 1] - y)
-    return rho, _wrapped(pose[:, 2] - theta)
+class Errors(Struct, frozen=True):
+    """Errors of an estimate [m, m, rad]."""
+
+    x: float
+    y: float
+    theta: float
 
 
-def has_converged(trace: Trace, scenario: Scenario) -> bool:
-    """ρ < 0.06 m and |θ error| < 0.05 rad at every tick of the last second.
+class Final(Struct, frozen=True):
+    """The robot at the last tick: errors to the goal [m, rad], speeds in force [m/s, rad/s].
 
-    Where the pose is measured, in the second's mean: the sensor's noise does not move the robot.
+    None where nothing is known, or it is not finite.
     """
-    last_second = robot_pose(trace)[trace["time"] >= trace["time"][-1] - 1.0]
-    if is_measured(trace):
-        last_second = np.nanmean(last_second, axis=0, keepdims=True)
-    rho, theta_error = goal_errors(last_second, scenario)
-    return bool(((rho < DISTANCE_BOUND) & (np.abs(theta_error) < HEADING_BOUND)).all())
+
+    rho: float | None
+    theta_error: float | None
+    v: float | None
+    omega: float | None
 
 
-def deviation(trace: Trace, estimates: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Estimate less pose, shape (ticks + 1, 3), heading wrapped."""
-    difference = estimates - robot_pose(trace)
-    difference[:, 2] = _wrapped(difference[:, 2])
-    return difference
+class Summary(Struct, frozen=True, kw_only=True):
+    """A run, in numbers. SI units; delays in ticks."""
+
+    schema_version: int = SCHEMA_VERSION
+    laglab: str
+    """The version that made the run."""
+    scenario: str
+    side: Side
+    """Who kept the record: both sides together, or one alone."""
+    transport: str
+    """What was between the sides."""
+    plant: str
+    """`fmu`, or the address of the real robot; of a station alone, unknown."""
+    estimator: str
+    n: int
+    m: int
+    seed: int
+    ticks: int
+    pose: Seen
+    final: Final
+    rms_error: Errors | None
+    """Of the estimate over the ticks >= m; None where there was none."""
+    compare: dict[str, Errors | None]
+    """The same of the estimator in the loop and of those that shadowed it."""
+    outcome: str | None
+    """`completed`, `diverged`, `interrupted`, `failed`, `displaced`; None: it was cut short."""
+    converged: bool
+    wall_time_s: float
+    real_time_factor: float | None
+    link: LinkReport | None
+    timing: TimingReport | None
+    station: StationReport | None
+    warnings: tuple[str, ...]
+    verdict: str
 
 
-def loop_estimates(trace: Trace) -> NDArray[np.float64]:
-    """x̂_k of the estimator in the loop, shape (ticks + 1, 3)."""
-    return np.stack([trace["x_est"], trace["y_est"], trace["theta_est"]], axis=1)
+def write_summary(summary: Summary, directory: Path) -> None:
+    """Keep the summary beside the trace. Raises ResultsError when it cannot be written."""
+    path = directory / SUMMARY_FILE
+    try:
+        path.write_bytes(msgspec.json.format(msgspec.json.encode(summary), indent=2) + b"\n")
+    except OSError as error:
+        raise ResultsError(f"cannot write {path}: {error.strerror}") from error
 
 
-def rms_error(deviations: NDArray[np.float64], measurement_delay: int) -> Errors | None:
-    """Root mean square over the ticks ≥ m with an estimate; None where there is none."""
-    settled = deviations[measurement_delay:]
-    if not len(settled) or np.isnan(settled).all():
-        return None
-    with np.errstate(over="ignore"):
-        values = np.sqrt(np.nanmean(settled**2, axis=0))
-    return dict(zip(("x", "y", "theta"), values.tolist(), strict=True))
+def read_summary(directory: Path) -> Summary:
+    """The summary that a run left. Raises ResultsError: there is none, or of another version."""
+    path = directory / SUMMARY_FILE
+    try:
+        data = path.read_bytes()
+        version = msgspec.json.decode(data, type=_Versioned).schema_version
+        if version == SCHEMA_VERSION:
+            return msgspec.json.decode(data, type=Summary)
+    except OSError as error:
+        raise ResultsError(f"{path} cannot be read: {error.strerror}") from error
+    except msgspec.DecodeError as error:
+        raise ResultsError(f"{path} is not a run's summary: {error}") from error
+    raise ResultsError(f"{path} has schema version {version}, this laglab reads {SCHEMA_VERSION}")
 
 
-def summarise(
-    scenario: Scenario, transport: Transport, ending: Ending, trace: Trace
-) -> dict[str, Any]:
-    """The contents of ``summary.json``; values that are not finite become null."""
-    rho, theta_error = goal_errors(robot_pose(trace), scenario)
-    completed = ending.outcome is not None and ending.outcome.reason is EndReason.COMPLETED
-    ticks = int(trace["tick"][-1] - trace["tick"][0])
-    simulated = ticks * scenario.sample_time
-    summary = {
-        "scenario": scenario.name,
-        "estimator": scenario.estimator,
-        "n": scenario.command_delay,
-        "m": scenario.measurement_delay,
-        "seed": scenario.seed,
-        "transport": transport,
-        "ticks": ticks,
-        "pose": "measured" if is_measured(trace) else "true",
-        "final": {
-            "rho": float(rho[-1]),
-            "theta_error": float(theta_error[-1]),
-            "v": float(trace["v"][-1]),
-            "omega": float(trace["omega"][-1]),
-        },
-        "rms_error": rms_error(deviation(trace, loop_estimates(trace)), scenario.measurement_delay),
-        "converged": completed and has_converged(trace, scenario),
-        "wall_time_s": ending.loop_seconds,
-        "real_time_factor": simulated / ending.loop_seconds if ending.loop_seconds else None,
-        **ending.statistics,
-    }
-    summary["verdict"] = _verdict(ending, summary)
-    return summary
-
-
-def _verdict(ending: Ending, summary: dict[str, Any]) -> str:
-    if ending.outcome is None:
-        return f"cut short at tick {summary['ticks']}: {ending.problem}"
-    tick = ending.outcome.tick
-    match ending.outcome.reason:
-        case EndReason.DIVERGED:
-            return f"stopped at tick {tick}: the estimate diverged (not finite, or beyond 1 km)"
-        case EndReason.INTERRUPTED:
-            return f"interrupted at tick {tick}"
-        case EndReason.FAILED:
-            return f"stopped at tick {tick}: the controller failed"
-    final = summary["final"]
-    word = "converged" if summary["converged"] else "did not converge"
-    seen = " as measured" if summary["pose"] == "measured" else ""
-    return (
-        f"{word}: at the end ρ = {final['rho']:.3g} m, "
-        f"θ error = {final['theta_error']:.3g} rad{seen}"
-    )
-
-
-def write_summary(summary: dict[str, Any], directory: Path) -> None:
-    """Keep the summary beside the trace."""
-    text = json.dumps(_finite(summary), indent=2, ensure_ascii=False)
-    (directory / SUMMARY_FILE).write_text(text + "\n", encoding="utf-8")
-
-
-def _finite(value: Any) -> Any:
-    """JSON has no NaN and no infinity: they become null."""
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    return None if isinstance(value, float) and not np.isfinite(value) else value
+class _Versioned(Struct):
+    schema_version: int = 1

@@ -150,6 +150,11 @@ class Scenario(BaseModel):
         pose = self.start if self.initial_estimate == "start" else self.initial_estimate
         return np.array(pose)
 
+    @classmethod
+    def from_toml(cls, text: str) -> "Scenario":
+        """What `to_toml` wrote."""
+        return cls.model_validate(tomllib.loads(text))
+
     def to_toml(self) -> str:
         """The scenario as a file that ``load`` reads back to an equal one."""
         return tomlkit.dumps(_plain(self.model_dump(by_alias=True, exclude_none=True)))

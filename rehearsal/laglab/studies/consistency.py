@@ -15,9 +15,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.results.summary import deviation
-from laglab.run.station_side import robot_model
-from laglab.run.trials import run_trial
+from laglab.interface import run
+from laglab.results.numbers import deviation
+from laglab.runs.station_side import robot_model
 from laglab.scenario import Scenario
 from laglab_control import ESTIMATORS, Replay, constant_delay, replay
 from laglab_gateway import Trace
@@ -118,7 +118,7 @@ def samples(
 
 def sample(scenario: Scenario, estimators: Sequence[str]) -> dict[str, Sample]:
     """One loop with the scenario's own filter, and every filter on its record."""
-    trace = run_trial(scenario)
+    trace = run(scenario).trace
     answer = {}
     for name in estimators:
         replayed = _reestimated(scenario, name, trace)

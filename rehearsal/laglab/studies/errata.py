@@ -4,10 +4,12 @@ from collections.abc import Iterator
 from functools import partial
 from typing import NamedTuple
 
+import numpy as np
+from msgspec.structs import astuple
 from rich.table import Table
 
-from laglab.results.summary import Errors, deviation, has_converged, loop_estimates, rms_error
-from laglab.run.trials import completed, run_trial
+from laglab.interface import run
+from laglab.results.summary import Errors
 from laglab.scenario import Scenario
 from laglab_control import Erratum, PrintedController
 
@@ -62,16 +64,14 @@ def _cost(scenario: Scenario, variant: Variant, seeds: int) -> Cost:
 
 def _trial(scenario: Scenario, variant: Variant) -> tuple[Errors | None, bool, bool]:
     """RMS error, whether the robot converged, and whether the estimate did not diverge."""
-    trace = run_trial(scenario, partial(PrintedController, errata=variant.errata))
-    errors = rms_error(deviation(trace, loop_estimates(trace)), scenario.measurement_delay)
-    whole = completed(trace, scenario)
-    return errors, whole and has_converged(trace, scenario), whole
+    done = run(scenario, controller=partial(PrintedController, errata=variant.errata)).summary
+    return done.rms_error, done.converged, done.outcome == "completed"
 
 
 def _mean(errors: list[Errors]) -> Errors | None:
     if not errors:
         return None
-    return {axis: sum(one[axis] for one in errors) / len(errors) for axis in errors[0]}
+    return Errors(*np.mean([astuple(each) for each in errors], axis=0).tolist())
 
 
 def costs_table(scenario: Scenario, rows: list[Cost]) -> Table:
@@ -98,6 +98,5 @@ def costs_table(scenario: Scenario, rows: list[Cost]) -> Table:
 def _spelled(errors: Errors | None) -> str:
     if errors is None:
         return "-"
-    if max(errors.values()) < EXACT:
-        return "exact"
-    return ", ".join(f"{value:.2g}" for value in errors.values())
+    values = astuple(errors)
+    return "exact" if max(values) < EXACT else ", ".join(f"{value:.2g}" for value in values)

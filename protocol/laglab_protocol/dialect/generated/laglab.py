@@ -2654,8 +2654,10 @@ LAGLAB_END_REASON_INTERRUPTED = 2
 enums["LAGLAB_END_REASON"][2] = EnumEntry("LAGLAB_END_REASON_INTERRUPTED", """A person stopped the run.""")
 LAGLAB_END_REASON_FAILED = 3
 enums["LAGLAB_END_REASON"][3] = EnumEntry("LAGLAB_END_REASON_FAILED", """The sender cannot go on; its own output tells why.""")
-LAGLAB_END_REASON_ENUM_END = 4
-enums["LAGLAB_END_REASON"][4] = EnumEntry("LAGLAB_END_REASON_ENUM_END", """""")
+LAGLAB_END_REASON_DISPLACED = 4
+enums["LAGLAB_END_REASON"][4] = EnumEntry("LAGLAB_END_REASON_DISPLACED", """Robot to a station that no longer has it: another station does.""")
+LAGLAB_END_REASON_ENUM_END = 5
+enums["LAGLAB_END_REASON"][5] = EnumEntry("LAGLAB_END_REASON_ENUM_END", """""")
 
 # HL_FAILURE_FLAG
 enums["HL_FAILURE_FLAG"] = Enum()
@@ -6347,6 +6349,7 @@ MAVLINK_MSG_ID_LAGLAB_MEASUREMENT = 52101
 MAVLINK_MSG_ID_LAGLAB_COMMAND = 52102
 MAVLINK_MSG_ID_LAGLAB_ESTIMATE = 52103
 MAVLINK_MSG_ID_LAGLAB_END = 52104
+MAVLINK_MSG_ID_LAGLAB_SETTINGS = 52105
 MAVLINK_MSG_ID_SYS_STATUS = 1
 MAVLINK_MSG_ID_SYSTEM_TIME = 2
 MAVLINK_MSG_ID_PING = 4
@@ -6776,6 +6779,54 @@ class MAVLink_laglab_end_message(MAVLink_message):
 # Define name on the class for backwards compatibility (it is now msgname).
 # Done with setattr to hide the class variable from mypy.
 setattr(MAVLink_laglab_end_message, "name", mavlink_msg_deprecated_name_property())
+
+
+class MAVLink_laglab_settings_message(MAVLink_message):
+    """
+    Either side: what the sender was told. The station sends it with
+    its heartbeats; the robot answers it with its own. With different
+    sample times both end; every other difference is worth a warning.
+    Who does not know it need not send it.
+    """
+
+    id = MAVLINK_MSG_ID_LAGLAB_SETTINGS
+    msgname = "LAGLAB_SETTINGS"
+    fieldnames = ["sample_time", "wheel_radius", "track", "v_max", "omega_max", "command_delay", "measurement_delay", "dialect"]
+    ordered_fieldnames = ["sample_time", "wheel_radius", "track", "v_max", "omega_max", "command_delay", "measurement_delay", "dialect"]
+    fieldtypes = ["double", "double", "double", "double", "double", "uint16_t", "uint16_t", "uint8_t"]
+    fielddisplays_by_name: Dict[str, str] = {}
+    fieldenums_by_name: Dict[str, str] = {}
+    fieldunits_by_name: Dict[str, str] = {"sample_time": "s", "wheel_radius": "m", "track": "m", "v_max": "m/s", "omega_max": "rad/s"}
+    native_format = bytearray(b"<dddddHHB")
+    orders = [0, 1, 2, 3, 4, 5, 6, 7]
+    lengths = [1, 1, 1, 1, 1, 1, 1, 1]
+    array_lengths = [0, 0, 0, 0, 0, 0, 0, 0]
+    crc_extra = 77
+    unpacker = struct.Struct("<dddddHHB")
+    instance_field = None
+    instance_offset = -1
+
+    def __init__(self, sample_time: float, wheel_radius: float, track: float, v_max: float, omega_max: float, command_delay: int, measurement_delay: int, dialect: int):
+        MAVLink_message.__init__(self, MAVLink_laglab_settings_message.id, MAVLink_laglab_settings_message.msgname)
+        self._fieldnames = MAVLink_laglab_settings_message.fieldnames
+        self._instance_field = MAVLink_laglab_settings_message.instance_field
+        self._instance_offset = MAVLink_laglab_settings_message.instance_offset
+        self.sample_time = sample_time
+        self.wheel_radius = wheel_radius
+        self.track = track
+        self.v_max = v_max
+        self.omega_max = omega_max
+        self.command_delay = command_delay
+        self.measurement_delay = measurement_delay
+        self.dialect = dialect
+
+    def pack(self, mav: "MAVLink", force_mavlink1: bool = False) -> bytes:
+        return self._pack(mav, self.crc_extra, self.unpacker.pack(self.sample_time, self.wheel_radius, self.track, self.v_max, self.omega_max, self.command_delay, self.measurement_delay, self.dialect), force_mavlink1=force_mavlink1)
+
+
+# Define name on the class for backwards compatibility (it is now msgname).
+# Done with setattr to hide the class variable from mypy.
+setattr(MAVLink_laglab_settings_message, "name", mavlink_msg_deprecated_name_property())
 
 
 class MAVLink_sys_status_message(MAVLink_message):
@@ -16856,6 +16907,7 @@ mavlink_map: Dict[int, Type[MAVLink_message]] = {
     MAVLINK_MSG_ID_LAGLAB_COMMAND: MAVLink_laglab_command_message,
     MAVLINK_MSG_ID_LAGLAB_ESTIMATE: MAVLink_laglab_estimate_message,
     MAVLINK_MSG_ID_LAGLAB_END: MAVLink_laglab_end_message,
+    MAVLINK_MSG_ID_LAGLAB_SETTINGS: MAVLink_laglab_settings_message,
     MAVLINK_MSG_ID_SYS_STATUS: MAVLink_sys_status_message,
     MAVLINK_MSG_ID_SYSTEM_TIME: MAVLink_system_time_message,
     MAVLINK_MSG_ID_PING: MAVLink_ping_message,
@@ -17609,6 +17661,44 @@ class MAVLink(object):
 
         """
         self.send(self.laglab_end_encode(tick, reason), force_mavlink1=force_mavlink1)
+
+    def laglab_settings_encode(self, sample_time: float, wheel_radius: float, track: float, v_max: float, omega_max: float, command_delay: int, measurement_delay: int, dialect: int) -> MAVLink_laglab_settings_message:
+        """
+        Either side: what the sender was told. The station sends it with its
+        heartbeats; the robot answers it with its own. With different
+        sample times both end; every other difference is worth a
+        warning. Who does not know it need not send it.
+
+        sample_time               : Time from tick to tick. [s] (type:double)
+        wheel_radius              : Radius of the wheels. [m] (type:double)
+        track                     : Distance between the wheels. [m] (type:double)
+        v_max                     : Limit of the forward speed that is commanded, or followed; infinite without. [m/s] (type:double)
+        omega_max                 : Limit of the turn rate that is commanded, or followed; infinite without. [rad/s] (type:double)
+        command_delay             : Ticks by which commands are late. (type:uint16_t)
+        measurement_delay         : Ticks by which measurements are late. (type:uint16_t)
+        dialect                   : Version of this dialect, as in its version element. (type:uint8_t)
+
+        """
+        return MAVLink_laglab_settings_message(sample_time, wheel_radius, track, v_max, omega_max, command_delay, measurement_delay, dialect)
+
+    def laglab_settings_send(self, sample_time: float, wheel_radius: float, track: float, v_max: float, omega_max: float, command_delay: int, measurement_delay: int, dialect: int, force_mavlink1: bool = False) -> None:
+        """
+        Either side: what the sender was told. The station sends it with its
+        heartbeats; the robot answers it with its own. With different
+        sample times both end; every other difference is worth a
+        warning. Who does not know it need not send it.
+
+        sample_time               : Time from tick to tick. [s] (type:double)
+        wheel_radius              : Radius of the wheels. [m] (type:double)
+        track                     : Distance between the wheels. [m] (type:double)
+        v_max                     : Limit of the forward speed that is commanded, or followed; infinite without. [m/s] (type:double)
+        omega_max                 : Limit of the turn rate that is commanded, or followed; infinite without. [rad/s] (type:double)
+        command_delay             : Ticks by which commands are late. (type:uint16_t)
+        measurement_delay         : Ticks by which measurements are late. (type:uint16_t)
+        dialect                   : Version of this dialect, as in its version element. (type:uint8_t)
+
+        """
+        self.send(self.laglab_settings_encode(sample_time, wheel_radius, track, v_max, omega_max, command_delay, measurement_delay, dialect), force_mavlink1=force_mavlink1)
 
     def sys_status_encode(self, onboard_control_sensors_present: int, onboard_control_sensors_enabled: int, onboard_control_sensors_health: int, load: int, voltage_battery: int, current_battery: int, battery_remaining: int, drop_rate_comm: int, errors_comm: int, errors_count1: int, errors_count2: int, errors_count3: int, errors_count4: int, onboard_control_sensors_present_extended: int = 0, onboard_control_sensors_enabled_extended: int = 0, onboard_control_sensors_health_extended: int = 0) -> MAVLink_sys_status_message:
         """

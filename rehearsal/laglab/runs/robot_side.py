@@ -6,12 +6,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 import laglab_fmu
-from laglab.run.plant import FmuPlant
+from laglab.runs.plant import FmuPlant
 from laglab.scenario import Scenario
 from laglab_gateway import (
     IDEAL,
@@ -19,16 +18,14 @@ from laglab_gateway import (
     Fates,
     Gateway,
     GatewayConfig,
-    Link,
-    Outcome,
     Parameter,
     Parameters,
-    Patience,
     RandomFates,
     RecordedFates,
-    Recorder,
     Relay,
+    Served,
     Services,
+    Surroundings,
     Timesyncing,
     Watch,
     Watcher,
@@ -44,13 +41,12 @@ from laglab_protocol import (
     ROBOT_SYSTEM,
     Codec,
     Endpoint,
-    Receiver,
+    Listener,
     Sender,
     open_endpoint,
+    read_key,
     refuse_open_door,
 )
-
-NewLink = Callable[[], tuple[Sender, Receiver]]
 
 
 @dataclass(frozen=True)
@@ -66,6 +62,11 @@ class Setup:
     unsigned: bool = False
     """Whether strangers may reach the real robot's own link, which is never signed, and those
     who watch need no key."""
+
+    def check(self) -> None:
+        """What can be known to be wrong before anything runs. Raises KeyFileError."""
+        if self.key is not None:
+            read_key(self.key)
 
 
 def robot_parameters(scenario: Scenario) -> laglab_fmu.RobotParameters:
@@ -113,6 +114,8 @@ def gateway_config(scenario: Scenario) -> GatewayConfig:
         last_tick=scenario.last_tick,
         sample_time=scenario.sample_time,
         safety=scenario.safety,
+        wheel_radius=scenario.wheel_radius,
+        track=scenario.track,
     )
 
 
@@ -126,15 +129,15 @@ def robot_services(
 
 @contextmanager
 def open_gateway(
-    scenario: Scenario, codec: Codec | None = None, armed: bool = True
+    scenario: Scenario, sender: Sender | None = None, armed: bool = True
 ) -> Iterator[Gateway]:
-    """The robot's side, its FMU loaded until the context ends; no codec: nothing is signed."""
+    """The robot's side, its FMU loaded until the context ends."""
     parameters = robot_parameters(scenario)
     with laglab_fmu.Robot.open(scenario.fmi, parameters) as robot:
         plant = FmuPlant(robot, parameters)
         free_running = scenario.pace == "realtime"
         services = robot_services(scenario, free_running, armed=armed)
-        yield Gateway(plant, gateway_config(scenario), link_fates(scenario), services, codec)
+        yield Gateway(plant, gateway_config(scenario), link_fates(scenario), services, sender)
 
 
 DIRECTIONS: tuple[Direction, ...] = ("command", "measurement")
@@ -155,88 +158,50 @@ def link_fates(scenario: Scenario) -> dict[Direction, Fates]:
     return fates
 
 
-def serve(
-    scenario: Scenario,
-    gateway: Gateway,
-    endpoint: Link,
-    recorder: Recorder,
-    patience: Patience,
-    progress: Callable[[int], None],
-    watchers: Sequence[Endpoint] = (),
-    watch_link: NewLink | None = None,
-) -> tuple[Outcome, dict[str, Any]]:
-    """Run the robot's side at the scenario's pace: how it ended, and what the stamps tell.
+@dataclass(frozen=True)
+class OpenRobot:
+    """The robot's side, ready to be served, until the context that gave it ends."""
 
-    Each watcher is spoken to by a sender and a receiver of its own, which `watch_link` makes.
-    """
-    watch = _watch(gateway.services, watchers, watch_link)
-    if scenario.pace == "lockstep":
-        outcome = serve_lockstep(gateway, endpoint, recorder, patience, progress, watch)
-        return outcome, {"link": gateway.audit.report()}
-    period = scenario.sample_time / scenario.speed
-    outcome, lateness = serve_realtime(
-        gateway, endpoint, recorder, patience, progress, period, watch=watch
-    )
-    link = gateway.audit.report() | {"timesync": clock_audit(gateway.services)}
-    return outcome, {"link": link, "timing": lateness.report()}
+    services: Services
+    codec: Codec
+    serve: Callable[[Surroundings], Served]
+    unsigned: bool
+    """Whether those who watch need no key."""
 
+    def watch(self, endpoints: Sequence[Endpoint]) -> Watch:
+        """Those who look on, each spoken to by a sender and a receiver of its own."""
+        return Watch(self.services, [self._watcher(endpoint) for endpoint in endpoints])
 
-def _watch(services: Services, watchers: Sequence[Endpoint], watch_link: NewLink | None) -> Watch:
-    new_link = watch_link or Codec(ROBOT_SYSTEM, ROBOT_COMPONENT).on_another_link
-    return Watch(services, [Watcher(each, *new_link()) for each in watchers])
-
-
-def clock_audit(services: Services) -> dict[str, float] | None:
-    """What TIMESYNC found: the station's clock less ours, and the way there and back [s]."""
-    timesync = services.timesync
-    if timesync is None or not timesync.samples:
-        return None
-    offsets, round_trips = np.array(timesync.samples).T * 1e-9
-    p50, p99 = np.percentile(round_trips, (50, 99))
-    return {
-        "offset_s": float(np.median(offsets)),
-        "round_trip_p50_s": float(p50),
-        "round_trip_p99_s": float(p99),
-        "samples": len(offsets),
-    }
-
-
-def serve_real(
-    scenario: Scenario,
-    robot: Endpoint,
-    codec: Codec,
-    armed: bool,
-    endpoint: Endpoint,
-    recorder: Recorder,
-    patience: Patience,
-    progress: Callable[[int], None],
-    watchers: Sequence[Endpoint] = (),
-    watch_link: NewLink | None = None,
-) -> tuple[Outcome, dict[str, Any]]:
-    """Be the link in front of a real robot, at its own pace; as `serve`."""
-    services = robot_services(scenario, free_running=True, placeable=False, armed=armed)
-    relay = Relay(gateway_config(scenario), services, link_fates(scenario), codec)
-    watch = _watch(services, watchers, watch_link)
-    outcome = serve_remote(relay, robot, endpoint, recorder, patience, progress, watch)
-    return outcome, {"link": relay.audit.report() | {"timesync": clock_audit(services)}}
-
-
-Serve = Callable[..., tuple[Outcome, dict[str, Any]]]
-"""`serve` or `serve_real`, given all but what is on the station's side."""
+    def _watcher(self, endpoint: Endpoint) -> Watcher:
+        need_no_key = EVERY_MESSAGE if self.unsigned else frozenset[str]()
+        sender, receiver = self.codec.on_another_link(need_no_key)
+        return Watcher(Listener(endpoint, receiver), sender)
 
 
 @contextmanager
-def open_robot(scenario: Scenario, setup: Setup) -> Iterator[Serve]:
-    """The robot's side: the FMU, or the real robot; open until the context ends."""
+def open_robot(scenario: Scenario, setup: Setup) -> Iterator[OpenRobot]:
+    """The robot's side: the FMU, or the real robot."""
     with Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, setup.key) as codec:
-        need_no_key = EVERY_MESSAGE if setup.unsigned else frozenset[str]()
-        watch_link = partial(codec.on_another_link, need_no_key)
         if setup.plant is None:
-            with open_gateway(scenario, codec, setup.armed) as gateway:
-                yield partial(serve, scenario, gateway, watch_link=watch_link)
+            with open_gateway(scenario, codec.sender, setup.armed) as gateway:
+                serve = partial(_serve_simulated, scenario, gateway)
+                yield OpenRobot(gateway.services, codec, serve, setup.unsigned)
         else:
             with open_endpoint(setup.plant) as robot:
                 refuse_open_door(robot, None, setup.unsigned)
-                yield partial(
-                    serve_real, scenario, robot, codec, setup.armed, watch_link=watch_link
-                )
+                relay = _relay(scenario, codec.sender, setup.armed)
+                serve = partial(serve_remote, relay, robot)
+                yield OpenRobot(relay.services, codec, serve, setup.unsigned)
+
+
+def _serve_simulated(scenario: Scenario, gateway: Gateway, around: Surroundings) -> Served:
+    """At the scenario's pace."""
+    if scenario.pace == "lockstep":
+        return serve_lockstep(gateway, around)
+    return serve_realtime(gateway, around, scenario.sample_time / scenario.speed)
+
+
+def _relay(scenario: Scenario, sender: Sender, armed: bool) -> Relay:
+    """The link in front of a real robot, at its own pace."""
+    services = robot_services(scenario, free_running=True, placeable=False, armed=armed)
+    return Relay(gateway_config(scenario), services, link_fates(scenario), sender)

@@ -1,0 +1,131 @@
+"""A run's files, written while it goes on."""
+
+import os
+from collections.abc import Callable, Iterable
+from contextlib import ExitStack
+from io import FileIO
+from pathlib import Path
+from typing import Generic, TypeVar
+
+from laglab_gateway.errors import TraceError
+from laglab_gateway.link.log import LinkRow
+from laglab_gateway.record.recorder import Recorder, TimingRow
+from laglab_gateway.record.trace import TraceRow, format_row
+from laglab_protocol import tlog_record
+
+TRACE_FILE = "trace.csv"
+TLOG_FILE = "robot.tlog"
+LINK_FILE = "link.csv"
+TIMING_FILE = "timing.csv"
+
+R = TypeVar("R")
+
+
+class _File(Generic[R]):
+    """A file, and the records that go there with the next flush."""
+
+    def __init__(self, path: Path, header: bytes, encode: Callable[[R], bytes]) -> None:
+        self.waiting: list[R] = []
+        self._path = path
+        self._encode = encode
+        self._size = 0
+        try:
+            self._file = FileIO(path, "w")
+        except OSError as error:
+            raise TraceError(f"cannot record {path}: {error.strerror}") from error
+        self._write(header)
+
+    def flush(self) -> None:
+        if self.waiting:
+            waiting, self.waiting = self.waiting, []
+            self._write(b"".join(map(self._encode, waiting)))
+
+    def close(self) -> None:
+        try:
+            self.flush()
+        finally:
+            self._file.close()
+
+    def _write(self, data: bytes) -> None:
+        """All of it or nothing: what found no room is cut off again."""
+        left = memoryview(data)
+        try:
+            while left:
+                left = left[self._file.write(left) :]
+        except OSError as error:
+            self._cut_back()
+            raise TraceError(
+                f"cannot record {self._path} any further: {error.strerror}: what was written up "
+                "to here is whole; make room, then run again"
+            ) from error
+        self._size += len(data)
+
+    def _cut_back(self) -> None:
+        if self._file.seekable():
+            os.ftruncate(self._file.fileno(), self._size)
+
+
+Row = TraceRow | LinkRow | TimingRow
+
+
+def _csv(path: Path, fields: tuple[str, ...]) -> _File[Row]:
+    header = ",".join(fields) + "\n"
+    return _File(path, header.encode(), lambda values: format_row(values).encode())
+
+
+class FileRecorder(Recorder):
+    """Writes `trace.csv` and `robot.tlog` into a directory; `link.csv` and `timing.csv` if any.
+
+    Kept until `flush`, then all of a file's records go there in one unbuffered write: a process
+    killed at any moment leaves whole rows and whole records, up to the last flush.
+    """
+
+    def __init__(self, directory: Path) -> None:
+        """Raises: TraceError, when the directory cannot be written."""
+        self._directory = directory
+        try:
+            directory.mkdir(parents=True, exist_ok=True)
+            for stale in (LINK_FILE, TIMING_FILE):
+                (directory / stale).unlink(missing_ok=True)
+        except OSError as error:
+            raise TraceError(f"cannot record into {directory}: {error.strerror}") from error
+        self._trace = _csv(directory / TRACE_FILE, TraceRow._fields)
+        self._tlog = _File[tuple[int, bytes]](
+            directory / TLOG_FILE, b"", lambda record: tlog_record(*record)
+        )
+        self._link: _File[Row] | None = None
+        self._timing: _File[Row] | None = None
+
+    def row(self, row: TraceRow) -> None:
+        """One more row of the trace."""
+        self._trace.waiting.append(row)
+
+    def frames(self, time_us: int, frames: Iterable[bytes]) -> None:
+        """More frames of the telemetry log."""
+        self._tlog.waiting += [(time_us, frame) for frame in frames]
+
+    def link(self, rows: Iterable[LinkRow]) -> None:
+        """More rows of the link log."""
+        self._link = self._link or _csv(self._directory / LINK_FILE, LinkRow._fields)
+        self._link.waiting += rows
+
+    def timing(self, row: TimingRow) -> None:
+        """One tick's lateness."""
+        self._timing = self._timing or _csv(self._directory / TIMING_FILE, TimingRow._fields)
+        self._timing.waiting.append(row)
+
+    def flush(self) -> None:
+        """Write all that has been kept."""
+        self._trace.flush()
+        self._tlog.flush()
+        if self._link:
+            self._link.flush()
+        if self._timing:
+            self._timing.flush()
+
+    def close(self) -> None:
+        """Write the rest, and close all files."""
+        with ExitStack() as stack:
+            for file in (self._trace, self._tlog, self._link, self._timing):
+                if file:
+                    stack.callback(file.close)

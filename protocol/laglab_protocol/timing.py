@@ -1,0 +1,39 @@
+"""How long things take, over any number of them: what is kept does not grow."""
+
+from typing import NamedTuple
+
+from hdrh.histogram import HdrHistogram
+
+LONGEST_NS = 3600 * 10**9
+DIGITS = 3
+
+
+class Quantiles(NamedTuple):
+    """Durations [s] within which half of them stayed, 99 %, all."""
+
+    p50: float
+    p99: float
+    longest: float
+
+
+class Durations:
+    """A streaming histogram of durations, to three digits; the longest exactly."""
+
+    def __init__(self) -> None:
+        self._histogram = HdrHistogram(1, LONGEST_NS, DIGITS)
+        self._longest = 0
+
+    def add(self, nanoseconds: int) -> None:
+        """One more; less than nothing counts as nothing, more than an hour as an hour."""
+        self._longest = max(self._longest, nanoseconds)
+        self._histogram.record_value(min(max(nanoseconds, 1), LONGEST_NS))
+
+    def __len__(self) -> int:
+        return int(self._histogram.get_total_count())
+
+    def quantiles(self) -> Quantiles | None:
+        """None when there are none."""
+        if not len(self):
+            return None
+        at = self._histogram.get_value_at_percentile
+        return Quantiles(at(50) * 1e-9, at(99) * 1e-9, self._longest * 1e-9)

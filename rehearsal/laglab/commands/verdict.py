@@ -1,0 +1,41 @@
+"""What a command says of a run that is over."""
+
+import sys
+from pathlib import Path
+from typing import NoReturn
+
+import typer
+from rich.console import Console
+
+from laglab.errors import RefusedError, RunError
+from laglab.results.complete import Way, complete
+from laglab.results.figure import FIGURE_FILE
+from laglab.results.run import Run
+from laglab.results.table import results_table, warnings
+from laglab.runs.ending import Ending
+from laglab.scenario import Scenario
+
+
+def conclude(scenario: Scenario, way: Way, ending: Ending, directory: Path) -> NoReturn:
+    """Say at once what broke, if something did; write the results and show them; end with the
+    run's exit code. Raises ResultsError, and KeyboardInterrupt for a run that never began."""
+    if ending.problem:
+        print(f"laglab: {ending.problem}", file=sys.stderr, flush=True)
+    try:
+        _show(complete(scenario, way, ending, directory))
+    except (RefusedError, RunError):
+        if not ending.problem:
+            raise
+    raise typer.Exit(ending.exit_code)
+
+
+def _show(run: Run) -> None:
+    """Table, warnings, verdict and place."""
+    console, errors = Console(), Console(stderr=True)
+    console.print(results_table(run.summary))
+    for warning in warnings(run.summary):
+        errors.print(f"warning: {warning}", highlight=False, soft_wrap=True)
+    console.print(run.summary.verdict, highlight=False, soft_wrap=True)
+    console.print(f"results in {run.directory}", highlight=False, soft_wrap=True)
+    if run.directory and not (run.directory / FIGURE_FILE).exists():
+        errors.print("no figure: matplotlib is not installed here", highlight=False)

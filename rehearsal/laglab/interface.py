@@ -1,0 +1,84 @@
+"""The Python way in: a scenario, a run of it, and what it left."""
+
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+
+from laglab.errors import RunError
+from laglab.progress import progress_of
+from laglab.results.complete import Way, complete, keep
+from laglab.results.place import place
+from laglab.results.run import Kept, Run
+from laglab.results.shadows import read_shadow, shadow_file
+from laglab.runs.ending import Ending
+from laglab.runs.rehearse import MakeController, Transport, rehearse_inline
+from laglab.runs.whole import run_into
+from laglab.scenario import Scenario, load
+from laglab_control import Controller
+from laglab_gateway import MemoryRecorder
+from laglab_protocol import EndReason
+
+
+def run(
+    scenario: Scenario | str | Path,
+    overrides: Mapping[str, object] | None = None,
+    transport: Transport = "inline",
+    out: str | Path | None = None,
+    progress: bool = False,
+    *,
+    controller: MakeController = Controller,
+) -> Run:
+    """Rehearse a scenario, given itself, by its shipped name or by its file.
+
+    Args:
+        overrides: scenario keys that are to be other than the scenario has them.
+        transport: what is between the two sides; `inline` runs both in this process.
+        out: the folder for the results, which must not hold another run's; None keeps them in
+            memory.
+        progress: show it on standard error.
+        controller: what computes the station's answers, of a run in memory.
+
+    Raises:
+        ScenarioError: there is no such scenario, or it cannot be.
+        PlaceError: the results cannot go there.
+        RunError: the run was cut short; what it left is in `out`.
+        KeyboardInterrupt: Ctrl-C; what was recorded is in `out`, and nothing goes on running.
+    """
+    chosen = _chosen(scenario, overrides)
+    with progress_of(chosen, progress) as told:
+        if transport == "inline" and out is None:
+            recorder = MemoryRecorder()
+            ending = rehearse_inline(chosen, recorder, told, controller=controller)
+            return _whole(ending, keep(chosen, Way(), ending, recorder))
+        if out is not None:
+            directory = place(chosen, Path(out))
+            ending = run_into(directory, chosen, transport, told)
+            return _whole(ending, complete(chosen, Way(transport=transport), ending, directory))
+        with tempfile.TemporaryDirectory(prefix="laglab-") as folder:
+            directory = Path(folder)
+            ending = run_into(directory, chosen, transport, told)
+            done = complete(chosen, Way(transport=transport), ending, directory, figure=False)
+            return _whole(ending, _in_memory(done))
+
+
+def _chosen(scenario: Scenario | str | Path, overrides: Mapping[str, object] | None) -> Scenario:
+    if isinstance(scenario, Scenario):
+        return scenario.overridden(overrides) if overrides else scenario
+    return load(str(scenario), overrides)
+
+
+def _whole(ending: Ending, done: Run) -> Run:
+    if ending.outcome is None:
+        raise RunError(ending.problem)
+    if ending.outcome.reason is EndReason.INTERRUPTED:
+        raise KeyboardInterrupt
+    return done
+
+
+def _in_memory(done: Run) -> Run:
+    assert done.directory is not None
+    shadows = {
+        name: read_shadow(shadow_file(done.directory, name)) for name in done.scenario.compare
+    }
+    kept = Kept(done.trace, done.link, done.timing, shadows)
+    return Run(done.scenario, done.summary, None, kept)

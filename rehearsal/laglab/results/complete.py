@@ -1,0 +1,177 @@
+"""From a record and an ending to a run: what every way of making one has in common."""
+
+from collections.abc import Iterable
+from importlib.metadata import version
+from pathlib import Path
+from typing import NamedTuple
+
+from laglab.errors import RefusedError, RunError
+from laglab.results.digest import Digest, digest
+from laglab.results.figure import save_figure
+from laglab.results.numbers import goal_errors, has_converged, robot_pose
+from laglab.results.run import Kept, Run, columns_of
+from laglab.results.shadows import (
+    Shadow,
+    collected,
+    kept_rows,
+    shadow_error,
+    shadow_file,
+    shadow_rows,
+)
+from laglab.results.summary import Errors, Final, Side, Summary, write_summary
+from laglab.runs.ending import Ending
+from laglab.scenario import Scenario
+from laglab_gateway import (
+    TLOG_FILE,
+    TRACE_FILE,
+    LinkRow,
+    MemoryRecorder,
+    TimingRow,
+    Trace,
+    TraceError,
+    trace_of,
+    trace_pieces,
+)
+from laglab_protocol import EndReason, Frame, decode
+from laglab_station import heard, read_session
+
+
+class Way(NamedTuple):
+    """By which way a run was made."""
+
+    side: Side = "both"
+    transport: str = "inline"
+    plant: str = "fmu"
+
+
+def complete(
+    scenario: Scenario, way: Way, ending: Ending, directory: Path, figure: bool = True
+) -> Run:
+    """Put summary, shadows and figure beside the record in `directory`.
+
+    Raises:
+        RunError: there is no record, for the run ended before its first tick.
+        ResultsError: something cannot be written.
+    """
+    try:
+        numbers = digest(trace_pieces(directory / TRACE_FILE), scenario.measurement_delay)
+    except TraceError as error:
+        raise nothing_recorded(ending, str(error)) from None
+    compared = {name: _shadowed(scenario, name, directory) for name in scenario.compare}
+    summary = summarise(scenario, way, ending, numbers, compared)
+    write_summary(summary, directory)
+    run = Run(scenario, summary, directory)
+    if figure:
+        save_figure(run.figure, directory)
+    return run
+
+
+def keep(scenario: Scenario, way: Way, ending: Ending, recorder: MemoryRecorder) -> Run:
+    """The same in memory. Raises RunError when there is no record."""
+    if not recorder.rows:
+        raise nothing_recorded(ending, "the run ended before its first tick was over")
+    trace = trace_of(recorder.rows)
+    session = list(heard(_frames(recorder.tlog)))
+    shadows: dict[str, Shadow] = {}
+    compared: dict[str, Errors | None] = {}
+    for name in scenario.compare:
+        rows = list(shadow_rows(scenario, name, session))
+        shadows[name] = collected(rows)
+        compared[name] = shadow_error(rows, [trace], scenario.measurement_delay)
+    summary = summarise(
+        scenario, way, ending, digest([trace], scenario.measurement_delay), compared
+    )
+    link = columns_of(recorder.link_rows, LinkRow)
+    timing = columns_of(recorder.timing_rows, TimingRow)
+    return Run(scenario, summary, None, Kept(trace, link, timing, shadows))
+
+
+def nothing_recorded(ending: Ending, otherwise: str) -> BaseException:
+    """What to raise for a run of which there is nothing to show."""
+    if ending.outcome and ending.outcome.reason is EndReason.INTERRUPTED:
+        return KeyboardInterrupt()
+    if not ending.begun:
+        return RefusedError(ending.problem)
+    return RunError(ending.problem or otherwise)
+
+
+def _frames(records: Iterable[tuple[int, bytes]]) -> Iterable[Frame]:
+    for _, raw in records:
+        frame = decode(raw, 0)
+        assert isinstance(frame, Frame), "we made it ourselves"
+        yield frame
+
+
+def _shadowed(scenario: Scenario, name: str, directory: Path) -> Errors | None:
+    rows = shadow_rows(scenario, name, read_session(directory / TLOG_FILE))
+    written = kept_rows(rows, shadow_file(directory, name))
+    pieces = trace_pieces(directory / TRACE_FILE)
+    return shadow_error(written, pieces, scenario.measurement_delay)
+
+
+def summarise(
+    scenario: Scenario,
+    way: Way,
+    ending: Ending,
+    numbers: Digest,
+    compared: dict[str, Errors | None],
+) -> Summary:
+    """The run in numbers."""
+    end, outcome = numbers.end, ending.outcome
+    ticks = round(float(end["time"][-1]) / scenario.sample_time)
+    completed = outcome is not None and outcome.reason is EndReason.COMPLETED
+    converged = completed and has_converged(end, scenario.goal)
+    final = _final(end, scenario)
+    seconds = ending.loop_seconds
+    in_loop = {scenario.estimator: numbers.rms_error} if compared else {}
+    return Summary(
+        laglab=version("laglab"),
+        scenario=scenario.name,
+        side=way.side,
+        transport=way.transport,
+        plant=way.plant,
+        estimator=scenario.estimator,
+        n=scenario.command_delay,
+        m=scenario.measurement_delay,
+        seed=scenario.seed,
+        ticks=ticks,
+        pose=numbers.seen,
+        final=final,
+        rms_error=numbers.rms_error,
+        compare=in_loop | compared,
+        outcome=outcome.reason.name.lower() if outcome else None,
+        converged=converged,
+        wall_time_s=seconds,
+        real_time_factor=ticks * scenario.sample_time / seconds if seconds else None,
+        link=ending.link,
+        timing=ending.timing,
+        station=ending.station,
+        warnings=ending.warnings,
+        verdict=_verdict(ending, final, converged, ticks, numbers.seen == "measured"),
+    )
+
+
+def _final(end: Trace, scenario: Scenario) -> Final:
+    rho, theta_error = goal_errors(robot_pose(end)[-1:], scenario.goal)
+    numbers = rho[0], theta_error[0], end["v"][-1], end["omega"][-1]
+    return Final(*(float(number) if abs(number) < float("inf") else None for number in numbers))
+
+
+def _verdict(ending: Ending, final: Final, converged: bool, ticks: int, measured: bool) -> str:
+    if ending.outcome is None:
+        return f"cut short at tick {ticks}: {ending.problem}"
+    tick = ending.outcome.tick
+    match ending.outcome.reason:
+        case EndReason.DIVERGED:
+            return f"stopped at tick {tick}: the estimate diverged (not finite, or beyond 1 km)"
+        case EndReason.INTERRUPTED:
+            return f"interrupted at tick {tick}"
+        case EndReason.FAILED:
+            return f"stopped at tick {tick}: the other side failed"
+        case EndReason.DISPLACED:
+            return f"stopped at tick {tick}: another station has taken over"
+    word = "converged" if converged else "did not converge"
+    seen = " as measured" if measured else ""
+    if final.rho is None or final.theta_error is None:
+        return f"{word}: where the robot is at the end is not known"
+    return f"{word}: at the end ρ = {final.rho:.3g} m, θ error = {final.theta_error:.3g} rad{seen}"

@@ -1,0 +1,41 @@
+"""A trace of any length in a few numbers, read piece by piece."""
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+
+from laglab.results.numbers import LAST_SECOND, RmsError, deviation, is_measured, loop_estimates
+from laglab.results.summary import Errors, Seen
+from laglab_gateway import Trace
+
+
+class Digest(NamedTuple):
+    """What the summary needs of a trace."""
+
+    rows: int
+    seen: Seen
+    end: Trace
+    """The last second."""
+    rms_error: Errors | None
+
+
+def digest(pieces: Iterable[Trace], measurement_delay: int) -> Digest:
+    """Of the pieces of a trace, in order; there is one at least, and in each a row."""
+    kept: list[Trace] = []
+    rms = RmsError()
+    rows = 0
+    for piece in pieces:
+        settled = max(measurement_delay - rows, 0)
+        rms.add(deviation(piece, loop_estimates(piece))[settled:])
+        rows += len(piece["tick"])
+        kept = [each for each in kept if each["time"][-1] >= piece["time"][-1] - LAST_SECOND]
+        kept.append(piece)
+    end = _last_second(kept)
+    return Digest(rows, "measured" if is_measured(end) else "true", end, rms.errors())
+
+
+def _last_second(pieces: list[Trace]) -> Trace:
+    whole = {name: np.concatenate([each[name] for each in pieces]) for name in pieces[0]}
+    last = whole["time"] >= whole["time"][-1] - LAST_SECOND
+    return {name: column[last] for name, column in whole.items()}

@@ -1,0 +1,183 @@
+"""A run that is over, however it was made."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from laglab.errors import ResultsError
+from laglab.results.figure import draw
+from laglab.results.shadows import Shadow, beside, read_shadow, shadow_file
+from laglab.results.summary import Summary, read_summary
+from laglab.scenario import Scenario, load
+from laglab_gateway import (
+    LINK_FILE,
+    TIMING_FILE,
+    TRACE_FILE,
+    LinkRow,
+    TimingRow,
+    Trace,
+    read_trace,
+    trace_pieces,
+)
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.figure import Figure
+
+SCENARIO_FILE = "scenario.toml"
+MOST_DRAWN = 20_000
+"""Rows: more than that no figure shows."""
+
+Columns = Mapping[str, NDArray[np.generic]]
+"""An array per column; none of them has an entry where nothing was recorded."""
+
+
+class Kept(NamedTuple):
+    """All that was recorded of a run, in memory."""
+
+    trace: Trace
+    link: Columns
+    timing: Columns
+    shadows: Mapping[str, Shadow]
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """What a run leaves. SI units; one entry a tick in every column of `trace`.
+
+    `trace["x"]`, `trace["y"]`, `trace["theta"]` is the true pose [m, m, rad] (NaN of a real robot),
+    `x_meas` … the sensor's sample, `x_est` … the estimate in the loop, `v_sent`, `omega_sent` the
+    command sent, `v`, `omega` the speeds in force [m/s, rad/s]; `x_NAME` … is what the estimator
+    NAME, which shadowed the loop, said. NaN where there was nothing.
+    """
+
+    scenario: Scenario
+    summary: Summary
+    directory: Path | None
+    """Where its files are; None: it was kept in memory alone."""
+    kept: Kept | None = None
+
+    @cached_property
+    def trace(self) -> Trace:
+        """All columns, each of shape (ticks + 1,). Raises TraceError."""
+        trace = self.kept.trace if self.kept else read_trace(self._folder / TRACE_FILE)
+        for name in self.scenario.compare:
+            trace = trace | beside(trace, self._shadow(name), name)
+        return trace
+
+    @cached_property
+    def link(self) -> Columns:
+        """What an impaired link did: a row for each copy of each frame, columns as in link.csv."""
+        return self.kept.link if self.kept else _columns(self._folder / LINK_FILE, LinkRow)
+
+    @cached_property
+    def timing(self) -> Columns:
+        """How late each tick began and was answered [s], of ticks on the wall clock."""
+        return self.kept.timing if self.kept else _columns(self._folder / TIMING_FILE, TimingRow)
+
+    def figure(self) -> Figure:
+        """The run as a picture, to be shown or saved. Needs matplotlib."""
+        return draw(self.drawn, self.scenario)
+
+    @property
+    def drawn(self) -> Trace:
+        """As much of the trace as a figure shows."""
+        return _thinned(self.trace) if self.kept or self._is_short else self._read_thinned()
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The trace, a row a tick, indexed by `tick`. Needs pandas."""
+        import pandas
+
+        frame = pandas.DataFrame(dict(self.trace))
+        return frame.astype({"tick": int}).set_index("tick")
+
+    def pieces(self) -> Iterator[Trace]:
+        """The trace, as many rows at a time as memory always has room for."""
+        return iter([self.kept.trace]) if self.kept else trace_pieces(self._folder / TRACE_FILE)
+
+    @property
+    def _folder(self) -> Path:
+        if self.directory is None:
+            raise ResultsError("this run was kept in memory alone: it has no files")
+        return self.directory
+
+    def _shadow(self, name: str) -> Shadow:
+        return (
+            self.kept.shadows[name] if self.kept else read_shadow(shadow_file(self._folder, name))
+        )
+
+    @property
+    def _is_short(self) -> bool:
+        return self.summary.ticks <= MOST_DRAWN
+
+    def _read_thinned(self) -> Trace:
+        """Read so that what is not drawn is never in memory together."""
+        stride = -(-self.summary.ticks // MOST_DRAWN)
+        pieces = [
+            {name: column[::stride] for name, column in each.items()} for each in self.pieces()
+        ]
+        whole = {name: np.concatenate([each[name] for each in pieces]) for name in pieces[0]}
+        for name in self.scenario.compare:
+            whole |= beside(whole, _at(self._shadow(name), whole["tick"]), name)
+        return whole
+
+
+def open_run(directory: str | Path) -> Run:
+    """What an earlier run left in a folder; its tables are read when they are asked for.
+
+    Raises: ResultsError, ScenarioError.
+    """
+    folder = Path(directory)
+    return Run(load(str(folder / SCENARIO_FILE)), read_summary(folder), folder)
+
+
+def _thinned(trace: Trace) -> Trace:
+    stride = -(-len(trace["tick"]) // MOST_DRAWN)
+    return {name: column[::stride] for name, column in trace.items()}
+
+
+def _at(shadow: Shadow, ticks: NDArray[np.float64]) -> Shadow:
+    there = np.isin(shadow["tick"], ticks)
+    return {name: column[there] for name, column in shadow.items()}
+
+
+def columns_of(rows: list[LinkRow] | list[TimingRow], kind: type[LinkRow | TimingRow]) -> Columns:
+    """The rows' columns: texts, whole numbers, doubles (NaN for nothing)."""
+    cells = zip(*rows, strict=True) if rows else ((),) * len(kind._fields)
+    return {
+        name: np.array([np.nan if cell is None else cell for cell in column])
+        for name, column in zip(kind._fields, cells, strict=True)
+    }
+
+
+def _columns(path: Path, kind: type[LinkRow | TimingRow]) -> Columns:
+    """Of a CSV file, which a run leaves only where there was something to say."""
+    if not path.exists():
+        return columns_of([], kind)
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            header, *rows = csv.reader(file)
+    except (OSError, ValueError) as error:
+        raise ResultsError(f"{path} cannot be read: {error}") from error
+    if header != list(kind._fields):
+        raise ResultsError(f"{path}: expected the columns {','.join(kind._fields)}")
+    whole = [row for row in rows if len(row) == len(header)]
+    cells = zip(*whole, strict=True) if whole else ((),) * len(header)
+    return {name: _parsed(column) for name, column in zip(header, cells, strict=True)}
+
+
+def _parsed(cells: tuple[str, ...]) -> NDArray[np.generic]:
+    for kind in (int, float):
+        try:
+            return np.array([kind(cell or "nan") for cell in cells])
+        except ValueError:
+            continue
+    return np.array(cells)

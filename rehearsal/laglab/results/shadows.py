@@ -1,0 +1,105 @@
+"""Estimators that shadow a run: what they say to the record of it."""
+
+import csv
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from laglab.errors import ResultsError, ScenarioError
+from laglab.results.numbers import AXES, RmsError, deviation
+from laglab.results.summary import Errors
+from laglab.runs.station_side import station_config
+from laglab.scenario import Scenario
+from laglab_control import ESTIMATORS
+from laglab_gateway import Trace
+from laglab_station import SessionTick, ShadowRow, shadow
+
+COLUMNS = ("tick", "x", "y", "theta", "p_xx", "p_xy", "p_xt", "p_yy", "p_yt", "p_tt")
+"""Of a shadow's file: the tick, its estimate and the upper triangle of its covariance."""
+
+Shadow = dict[str, NDArray[np.float64]]
+"""An array per column."""
+
+
+def shadow_file(directory: Path, name: str) -> Path:
+    """Where a run keeps what the estimator `name` said."""
+    return directory / f"shadow-{name}.csv"
+
+
+def shadow_rows(
+    scenario: Scenario, name: str, session: Iterable[SessionTick]
+) -> Iterator[ShadowRow]:
+    """What the named estimator makes of the session, with the scenario's model and prior.
+
+    Raises: ScenarioError, when there is no such estimator.
+    """
+    if name not in ESTIMATORS:
+        raise ScenarioError(f"--estimator: {name!r} is not one of {', '.join(ESTIMATORS)}")
+    config = station_config(scenario.model_copy(update={"estimator": name}))
+    return shadow(config, session)
+
+
+def kept_rows(rows: Iterable[ShadowRow], path: Path) -> Iterator[ShadowRow]:
+    """The same rows, each written to the file; numbers read back to the same doubles."""
+    upper = np.triu_indices(3)
+    try:
+        with path.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(COLUMNS)
+            for row in rows:
+                writer.writerow([row.tick, *row.x.tolist(), *row.P[upper].tolist()])
+                yield row
+    except OSError as error:
+        raise ResultsError(f"cannot write {path}: {error.strerror}") from error
+
+
+def collected(rows: Iterable[ShadowRow]) -> Shadow:
+    """All rows, as arrays."""
+    upper = np.triu_indices(3)
+    cells = [[row.tick, *row.x.tolist(), *row.P[upper].tolist()] for row in rows]
+    table = np.array(cells, dtype=np.float64).reshape(-1, len(COLUMNS))
+    return dict(zip(COLUMNS, table.T, strict=True))
+
+
+def read_shadow(path: Path) -> Shadow:
+    """What `kept_rows` wrote. Raises ResultsError when the file is no shadow's."""
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            header, *cells = csv.reader(file)
+            table = np.array(cells, dtype=np.float64).reshape(-1, len(COLUMNS))
+    except (OSError, ValueError) as error:
+        raise ResultsError(f"{path} is not what an estimator said: {error}") from error
+    if header != list(COLUMNS):
+        raise ResultsError(f"{path}: expected the columns {','.join(COLUMNS)}")
+    return dict(zip(COLUMNS, table.T, strict=True))
+
+
+def beside(trace: Trace, shadow_: Shadow, name: str) -> Trace:
+    """The estimates as columns of the trace, `x_NAME` and so on; NaN where nothing was said."""
+    columns = {f"{axis}_{name}": np.full(len(trace["tick"]), np.nan) for axis in AXES}
+    rows = np.searchsorted(trace["tick"], shadow_["tick"])
+    there = rows < len(trace["tick"])
+    for axis in AXES:
+        columns[f"{axis}_{name}"][rows[there]] = shadow_[axis][there]
+    return columns
+
+
+def shadow_error(
+    rows: Iterable[ShadowRow], pieces: Iterable[Trace], measurement_delay: int
+) -> Errors | None:
+    """RMS over the ticks >= m, both read side by side."""
+    rms, coming = RmsError(), iter(rows)
+    waiting = next(coming, None)
+    done = 0
+    for piece in pieces:
+        estimates = np.full((len(piece["tick"]), 3), np.nan)
+        while waiting is not None and waiting.tick <= piece["tick"][-1]:
+            estimates[int(np.searchsorted(piece["tick"], waiting.tick))] = waiting.x
+            waiting = next(coming, None)
+        rms.add(deviation(piece, estimates)[max(measurement_delay - done, 0) :])
+        done += len(estimates)
+    for _ in coming:
+        pass  # to the end: they may be written as they come
+    return rms.errors()

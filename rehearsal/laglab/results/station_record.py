@@ -1,0 +1,87 @@
+"""What a station alone can keep of a run: what it heard and said."""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
+
+from laglab.errors import ResultsError
+from laglab_gateway import TLOG_FILE, TRACE_FILE, FileRecorder, TraceRow, format_row
+from laglab_station import Onlooker, SessionTick, read_session
+
+LATEST = 1024
+"""Ticks that a row waits for its measurement."""
+
+Cells = dict[str, float | None]
+
+
+class StationRecord(Onlooker):
+    """Keeps the frames as `robot.tlog`; passes warnings and ticks on to who watches the screen."""
+
+    def __init__(
+        self,
+        directory: Path,
+        sample_time: float,
+        warn: Callable[[str], None],
+        progress: Callable[[int], None],
+    ) -> None:
+        self._directory = directory
+        self._sample_time = sample_time
+        self._recorder = FileRecorder(directory)
+        self._warn = warn
+        self._progress = progress
+
+    def warned(self, text: str) -> None:
+        self._warn(text)
+
+    def said(self, frames: Sequence[bytes], tick: int | None) -> None:
+        self._recorder.frames(round((tick or 0) * self._sample_time * 1e6), frames)
+
+    def answered(self, tick: int) -> None:
+        self._recorder.flush()
+        self._progress(tick)
+
+    def close(self) -> None:
+        """The run is over: what was heard, once more as a trace. Raises ResultsError."""
+        self._recorder.close()
+        path = self._directory / TRACE_FILE
+        rows = station_rows(read_session(self._directory / TLOG_FILE), self._sample_time)
+        try:
+            with path.open("a", encoding="utf-8", newline="") as file:
+                file.writelines(map(format_row, rows))
+        except OSError as error:
+            raise ResultsError(f"cannot write {path}: {error.strerror}") from error
+
+
+def station_rows(session: Iterable[SessionTick], sample_time: float) -> Iterator[TraceRow]:
+    """A row a tick heard: no true pose; the measurement sampled then and the command in force from
+    then on, however late the one came and the other was told of."""
+    waiting: dict[int, Cells] = {}
+    first: int | None = None
+    for heard in session:
+        first = heard.tick if first is None else first
+        waiting[heard.tick] = _said(heard)
+        for message in heard.measurements:
+            if message.tick in waiting:
+                x, y, theta = message.pose
+                waiting[message.tick] |= {"x_meas": x, "y_meas": y, "theta_meas": theta}
+            if message.tick - 1 in waiting:
+                waiting[message.tick - 1] |= {"v": message.v, "omega": message.omega}
+        while next(iter(waiting)) < heard.tick - LATEST:
+            tick = next(iter(waiting))
+            yield _row(tick, first, sample_time, waiting.pop(tick))
+    for tick, cells in waiting.items():
+        yield _row(tick, first or 0, sample_time, cells)
+
+
+def _said(heard: SessionTick) -> Cells:
+    cells: Cells = {}
+    if heard.estimate:
+        x, y, theta = heard.estimate.pose
+        cells |= {"x_est": x, "y_est": y, "theta_est": theta}
+    if heard.command:
+        cells |= {"v_sent": heard.command.v, "omega_sent": heard.command.omega}
+    return cells
+
+
+def _row(tick: int, first: int, sample_time: float, cells: Cells) -> TraceRow:
+    values = [cells.get(name) for name in TraceRow._fields[2:]]
+    return TraceRow(tick, (tick - first) * sample_time, *values)

@@ -1,0 +1,114 @@
+"""A run's numbers, for reading."""
+
+from rich.table import Table
+
+from laglab.results.summary import Errors, Summary
+from laglab_gateway import DirectionReport, LinkReport, TimingReport
+from laglab_station import StationReport
+
+
+def results_table(summary: Summary) -> Table:
+    """Name and value, a row each."""
+    table = Table(box=None, show_header=False)
+    table.add_column(no_wrap=True)
+    table.add_column(overflow="fold")
+    for name, value in _rows(summary).items():
+        table.add_row(name, value)
+    return table
+
+
+def _rows(summary: Summary) -> dict[str, str]:
+    seen = " (measured)" if summary.pose == "measured" else ""
+    estimated = summary.compare or {summary.estimator: summary.rms_error}
+    final = summary.final
+    return {
+        "scenario": f"{summary.scenario} (seed {summary.seed}, {summary.transport})",
+        "estimator": summary.estimator,
+        "delays n, m": f"{summary.n} and {summary.m} ticks",
+        f"pose error at the end{seen}": f"ρ {_number(final.rho)} m, "
+        f"θ {_number(final.theta_error)} rad",
+        "speeds at the end": f"v {_number(final.v)} m/s, ω {_number(final.omega)} rad/s",
+        **{f"RMS error of {name}{seen}": _errors(errors) for name, errors in estimated.items()},
+        **(_link_rows(summary.link) if summary.link else {}),
+        **(_timing_row(summary.timing) if summary.timing else {}),
+        **(_station_rows(summary.station) if summary.station else {}),
+        "speed": _speed(summary),
+    }
+
+
+def _number(value: float | None) -> str:
+    return "?" if value is None else f"{value:.3g}"
+
+
+def _errors(errors: Errors | None) -> str:
+    if errors is None:
+        return "nothing was estimated"
+    return f"x {errors.x:.3g} m, y {errors.y:.3g} m, θ {errors.theta:.3g} rad"
+
+
+def _link_rows(link: LinkReport) -> dict[str, str]:
+    """The delay audit, as far as there is anything to say beyond the configured delays."""
+    rows = {"commands": _direction(link.command), "measurements": _direction(link.measurement)}
+    if link.refused:
+        rows["refused commands"] = ", ".join(f"{n} {why}" for why, n in link.refused.items())
+    if link.stops:
+        more = f" and {link.stops - len(link.failsafe_stops)} more"
+        rows["failsafe stops at ticks"] = ", ".join(map(str, link.failsafe_stops)) + (
+            more if link.stops > len(link.failsafe_stops) else ""
+        )
+    if clocks := link.timesync:
+        rows["the station's clock"] = (
+            f"{1e3 * clocks.offset_s:.3f} ms ahead, "
+            f"round trip p50 {1e3 * clocks.round_trip_p50_s:.2f} ms, "
+            f"p99 {1e3 * clocks.round_trip_p99_s:.2f} ms"
+        )
+    return rows
+
+
+def _direction(audit: DirectionReport) -> str:
+    measured, lost = audit.measured, sum(audit.lost.values())
+    if measured is None:
+        return "none arrived"
+    delay = f"{measured.mean:.1f} ticks late ({measured.min} to {measured.max})"
+    causes = ", ".join(f"{count} {cause}" for cause, count in audit.lost.items())
+    return (
+        f"{audit.arrived} arrived, {delay}"
+        + (f"; lost {lost}: {causes}" if lost else "")
+        + (f"; {audit.reordered} out of order" if audit.reordered else "")
+    )
+
+
+def _timing_row(timing: TimingReport) -> dict[str, str]:
+    p50, p99, worst = (1e3 * each for each in (timing.p50_s, timing.p99_s, timing.max_s))
+    return {
+        "lateness of ticks": f"p50 {p50:.2f} ms, p99 {p99:.2f} ms, max {worst:.2f} ms; "
+        f"{timing.missed_deadlines} deadlines missed"
+    }
+
+
+def _station_rows(station: StationReport) -> dict[str, str]:
+    """What the station found out by itself: the delays, and its own speed."""
+    delays = f"n {station.n_seen}, m {station.m_seen} ticks"
+    rows = {"delays as the station saw them": delays}
+    if station.tick_p50_s is not None and station.tick_p99_s is not None:
+        p50, p99 = 1e6 * station.tick_p50_s, 1e6 * station.tick_p99_s
+        rows["the station's answer to a tick"] = f"p50 {p50:.0f} µs, p99 {p99:.0f} µs"
+    return rows
+
+
+def _speed(summary: Summary) -> str:
+    factor = summary.real_time_factor
+    return f"{summary.ticks} ticks in {summary.wall_time_s:.2f} s" + (
+        f", {factor:.1f} × real time" if factor else ""
+    )
+
+
+def warnings(summary: Summary) -> list[str]:
+    """What the reader must not overlook."""
+    said = list(summary.warnings)
+    if summary.timing and (missed := summary.timing.missed_deadlines):
+        said.append(
+            f"{missed} of {summary.ticks} ticks began more than a tick late: this machine "
+            "cannot keep up; take a smaller --speed"
+        )
+    return said

@@ -1,0 +1,83 @@
+"""One side of a run alone: the other one is somebody else's."""
+
+from dataclasses import replace
+
+from laglab.runs.clock import LoopClock
+from laglab.runs.ending import Ending
+from laglab.runs.errors import LINK_LOST, SIDE_ERRORS
+from laglab.runs.pauses import short_pauses
+from laglab.runs.robot_side import OpenRobot
+from laglab_gateway import Outcome, Surroundings
+from laglab_protocol import EndReason, Listener, SettingsError
+from laglab_station import Onlooker, Station, run_station
+
+
+def serve_alone(robot: OpenRobot, around: Surroundings) -> Ending:
+    """The robot's side to the end; what breaks is in the ending."""
+    clock = LoopClock(around.progress)
+    warnings: list[str] = []
+
+    def warn(text: str) -> None:
+        warnings.append(text)
+        around.warn(text)
+
+    try:
+        with short_pauses():
+            served = robot.serve(replace(around, progress=clock, warn=warn))
+    except SIDE_ERRORS as error:
+        return _cut_short(error, clock, warnings)
+    return Ending(
+        outcome=served.outcome,
+        loop_seconds=clock.seconds,
+        link=served.link,
+        timing=served.timing,
+        warnings=tuple(warnings),
+    )
+
+
+class _Timed(Onlooker):
+    """Passes all on, and times the loop."""
+
+    def __init__(self, onlooker: Onlooker, clock: LoopClock) -> None:
+        self._onlooker = onlooker
+        self._clock = clock
+        self.warned = onlooker.warned  # type: ignore[method-assign]
+        self.said = onlooker.said  # type: ignore[method-assign]
+
+    def answered(self, tick: int) -> None:
+        self._clock(tick)
+        self._onlooker.answered(tick)
+
+
+def answer_alone(
+    station: Station, listener: Listener, silence_timeout: float, onlooker: Onlooker
+) -> Ending:
+    """The station's side to the end; what breaks is in the ending."""
+    clock = LoopClock(lambda _: None)
+    try:
+        with short_pauses():
+            end = run_station(station, listener, silence_timeout, _Timed(onlooker, clock))
+    except KeyboardInterrupt:
+        outcome = Outcome(EndReason.INTERRUPTED, station.tick or 0)
+    except SIDE_ERRORS as error:
+        return replace(_cut_short(error, clock, list(station.warnings)), station=station.report())
+    else:
+        known = end.reason in set(EndReason)
+        outcome = Outcome(EndReason(end.reason) if known else EndReason.FAILED, end.tick)
+    report = station.report()
+    return Ending(
+        outcome=outcome,
+        loop_seconds=clock.seconds,
+        station=report,
+        warnings=report.warnings,
+    )
+
+
+def _cut_short(error: Exception, clock: LoopClock, warnings: list[str]) -> Ending:
+    begun = clock.seconds > 0 or isinstance(error, LINK_LOST)
+    return Ending(
+        problem=str(error),
+        begun=begun and not isinstance(error, SettingsError),
+        loop_seconds=clock.seconds,
+        warnings=tuple(warnings),
+    )

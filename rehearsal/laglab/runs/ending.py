@@ -1,0 +1,39 @@
+"""How the sides of a run ended."""
+
+from dataclasses import dataclass
+
+from laglab_gateway import LinkReport, Outcome, TimingReport
+from laglab_protocol import EndReason
+from laglab_station import StationReport
+
+EXIT_CODES = {
+    EndReason.COMPLETED: 0,
+    EndReason.DIVERGED: 3,
+    EndReason.INTERRUPTED: 130,
+    EndReason.FAILED: 4,
+    EndReason.DISPLACED: 4,
+}
+KNOWN_BEFORE = 2
+BROKE = 4
+
+
+@dataclass(frozen=True)
+class Ending:
+    """An outcome, or the problem that cut the run short; and what each side told of it."""
+
+    outcome: Outcome | None = None
+    problem: str = ""
+    begun: bool = True
+    """Whether the run had begun; a problem before that is the user's to mend."""
+    loop_seconds: float = 0.0
+    link: LinkReport | None = None
+    timing: TimingReport | None = None
+    station: StationReport | None = None
+    warnings: tuple[str, ...] = ()
+
+    @property
+    def exit_code(self) -> int:
+        """Of the command that made the run."""
+        if self.outcome:
+            return EXIT_CODES[self.outcome.reason]
+        return BROKE if self.begun else KNOWN_BEFORE

@@ -1,0 +1,18 @@
+"""What the sides of a run can say about themselves in one line."""
+
+from laglab_control import ControlError
+from laglab_fmu import FmuError
+from laglab_gateway import GatewayError, PlantSilentError, StationSilentError
+from laglab_protocol import FarEndGoneError, FarEndStalledError, ProtocolError
+from laglab_station import RobotSilentError, StationError
+
+SIDE_ERRORS = (FmuError, GatewayError, ControlError, StationError, ProtocolError)
+
+LINK_LOST = (
+    StationSilentError,
+    RobotSilentError,
+    PlantSilentError,
+    FarEndGoneError,
+    FarEndStalledError,
+)
+"""What ends a run that had begun; the other errors of a side are the user's to mend."""

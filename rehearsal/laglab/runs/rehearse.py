@@ -1,0 +1,217 @@
+"""Starting both sides, following them, and collecting what they left."""
+
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from queue import Empty, Queue
+from time import monotonic
+from typing import Literal
+
+from laglab.runs.child import Child, Inbox, started
+from laglab.runs.clock import LoopClock
+from laglab.runs.ending import Ending
+from laglab.runs.errors import LINK_LOST, SIDE_ERRORS
+from laglab.runs.inline import InlineLink
+from laglab.runs.reports import (
+    Answered,
+    Ended,
+    Failed,
+    Finished,
+    Listening,
+    Order,
+    Progress,
+    Warned,
+)
+from laglab.runs.robot_side import Setup, open_robot
+from laglab.runs.station_side import make_station
+from laglab.scenario import Scenario
+from laglab_control import Controller, StationConfig
+from laglab_gateway import Outcome, Recorder, Surroundings
+from laglab_protocol import STATION_COMPONENT, STATION_SYSTEM, Codec, EndReason, Listener
+
+Transport = Literal["inline", "udp", "serial"]
+MakeController = Callable[[StationConfig], Controller]
+
+NOTICE_SECONDS = 1.0
+"""What a gateway needs, besides the silence timeout, to say that its station is silent."""
+LOOK_UP = 0.5
+"""[s] So often a wait for reports looks up: not every system lets a Ctrl-C through it."""
+
+
+def unheard(_: object) -> None:
+    """Nobody asked."""
+
+
+def rehearse_inline(
+    scenario: Scenario,
+    recorder: Recorder,
+    progress: Callable[[int], None] = unheard,
+    setup: Setup | None = None,
+    controller: MakeController = Controller,
+) -> Ending:
+    """Both sides in this process: the same bytes, with nothing between them."""
+    setup = setup or Setup()
+    clock = LoopClock(progress)
+    warnings: list[str] = []
+    try:
+        with (
+            open_robot(scenario, setup) as robot,
+            Codec(STATION_SYSTEM, STATION_COMPONENT, setup.key) as codec,
+        ):
+            station = make_station(scenario, codec.sender, controller)
+            link = InlineLink(station, codec.receiver)
+            listener = Listener(link, robot.codec.receiver)
+            around = Surroundings(listener, recorder, progress=clock, warn=warnings.append)
+            served = robot.serve(around)
+    except SIDE_ERRORS as error:
+        begun = clock.seconds > 0 or isinstance(error, LINK_LOST)
+        return Ending(problem=str(error), begun=begun, loop_seconds=clock.seconds)
+    report = station.report()
+    return Ending(
+        outcome=served.outcome,
+        loop_seconds=clock.seconds,
+        link=served.link,
+        timing=served.timing,
+        station=report,
+        warnings=(*warnings, *report.warnings),
+    )
+
+
+def rehearse_apart(
+    scenario: Scenario,
+    transport: Transport,
+    directory: Path,
+    progress: Callable[[int], None] = unheard,
+    setup: Setup | None = None,
+) -> Ending:
+    """Each side in a process of its own; the robot's leaves its record in `directory`.
+
+    Ctrl-C ends both in order; the outcome says so.
+    """
+    setup = setup or Setup()
+    key = None if setup.key is None else str(setup.key)
+    with _gateway_url(transport) as url:
+        order = Order(scenario.to_toml(), url, str(directory), setup.plant, key)
+        inbox: Inbox = Queue()
+        with started("gateway", "laglab.runs.sides:robot_side", order, inbox) as gateway:
+            return _Rehearsal(gateway, inbox, scenario, key, progress).follow()
+
+
+@contextmanager
+def _gateway_url(transport: Transport) -> Iterator[str]:
+    if transport == "udp":
+        yield "udpin://127.0.0.1:0"
+    else:
+        with tempfile.TemporaryDirectory(prefix="laglab-") as directory:
+            yield f"pty://{directory}/robot"
+
+
+def far_end(address: str) -> str:
+    """The address a station opens to reach a gateway that listens at ``address``."""
+    scheme, _, place = address.partition("://")
+    return f"udpout://{place}" if scheme == "udpin" else f"serial://{place}:57600"
+
+
+class _Rehearsal:
+    """Two sides in processes of their own, as their reports come in."""
+
+    def __init__(
+        self,
+        gateway: Child,
+        inbox: Inbox,
+        scenario: Scenario,
+        key: str | None,
+        progress: Callable[[int], None],
+    ) -> None:
+        self._gateway = gateway
+        self._inbox = inbox
+        self._scenario = scenario
+        self._key = key
+        self._progress = progress
+        self._ending = Ending(begun=False)
+        self._finished = self._over = self._station_over = False
+        self._problems: list[str] = []
+
+    def follow(self) -> Ending:
+        """Until both sides have said their last."""
+        address = self._first_address()
+        if address is None:
+            return self._summed_up()
+        order = Order(self._scenario.to_toml(), far_end(address), key=self._key)
+        with started("controller", "laglab.runs.sides:station_side", order, self._inbox):
+            try:
+                self._read_on()
+            except KeyboardInterrupt:
+                self._gateway.stop()
+                self._read_on()
+        return self._summed_up()
+
+    def _first_address(self) -> str | None:
+        while not self._over:
+            _, report = self._inbox.get()
+            if isinstance(report, Listening):
+                return report.address
+            self._take_of_gateway(report)
+        return None
+
+    def _read_on(self) -> None:
+        """A side whose far end is gone gets a while to find and say so, and no more."""
+        deadline = None
+        while not (self._over and self._station_over):
+            if deadline is None and (self._over or self._station_over):
+                deadline = monotonic() + self._scenario.silence_timeout + NOTICE_SECONDS
+            if deadline is not None and monotonic() > deadline:
+                return
+            try:
+                sender, report = self._inbox.get(timeout=LOOK_UP)
+            except Empty:
+                continue
+            if sender is self._gateway:
+                self._take_of_gateway(report)
+            else:
+                self._take_of_station(report)
+
+    def _take_of_gateway(self, report: object) -> None:
+        ending = self._ending
+        match report:
+            case Progress(tick, seconds):
+                self._ending = replace(ending, begun=True, loop_seconds=seconds)
+                self._progress(tick)
+            case Warned(text):
+                self._ending = replace(ending, warnings=(*ending.warnings, text))
+            case Finished(reason, tick, seconds, link, timing):
+                outcome = Outcome(EndReason(reason), tick)
+                self._ending = replace(
+                    ending, outcome=outcome, loop_seconds=seconds, link=link, timing=timing
+                )
+                self._finished = True
+            case Failed(reason, begun):
+                self._fail(reason, begun)
+            case Ended(how):
+                self._over = True
+                if not (self._finished or self._problems):
+                    self._fail(how, begun=True)
+
+    def _take_of_station(self, report: object) -> None:
+        match report:
+            case Answered(station):
+                warnings = (*self._ending.warnings, *station.warnings)
+                self._ending = replace(self._ending, station=station, warnings=warnings)
+            case Failed(reason, begun):
+                self._fail(reason, begun)
+            case Ended(how):
+                self._station_over = True
+                if self._ending.station is None and not self._problems:
+                    self._fail(how, begun=True)
+
+    def _fail(self, reason: str, begun: bool) -> None:
+        if reason not in self._problems:
+            self._problems.append(reason)
+        self._ending = replace(self._ending, begun=self._ending.begun or begun)
+
+    def _summed_up(self) -> Ending:
+        if self._ending.outcome is not None:
+            return self._ending
+        return replace(self._ending, problem="; ".join(self._problems))

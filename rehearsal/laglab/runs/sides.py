@@ -1,0 +1,78 @@
+"""The two sides of a rehearsal, each in a process of its own."""
+
+from contextlib import closing
+from pathlib import Path
+
+from laglab.runs.child import Tell
+from laglab.runs.clock import LoopClock
+from laglab.runs.errors import LINK_LOST, SIDE_ERRORS
+from laglab.runs.pauses import short_pauses
+from laglab.runs.reports import (
+    Answered,
+    Failed,
+    Finished,
+    Listening,
+    Order,
+    Progress,
+    Warned,
+)
+from laglab.runs.robot_side import Setup, open_robot
+from laglab.runs.station_side import open_station
+from laglab.scenario import Scenario
+from laglab_gateway import FileRecorder, Patience, Surroundings
+from laglab_protocol import Listener, open_endpoint
+from laglab_station import run_station
+
+CONNECT = 30.0
+"""[s] The other side was started by the same hand: it comes soon, or never."""
+
+
+def robot_side(order: Order, tell: Tell) -> None:
+    """The robot's side, from opening the endpoint to the last report."""
+    scenario = Scenario.from_toml(order.scenario)
+    clock = LoopClock(lambda tick: tell(Progress(tick, clock.seconds)))
+    begun = False
+    try:
+        with (
+            open_robot(scenario, Setup(order.plant, _path(order.key))) as robot,
+            closing(FileRecorder(Path(order.directory))) as recorder,
+            open_endpoint(order.url) as endpoint,
+            short_pauses(),
+        ):
+            tell(Listening(endpoint.name))
+            begun = True
+            served = robot.serve(
+                Surroundings(
+                    Listener(endpoint, robot.codec.receiver),
+                    recorder,
+                    Patience(silence=scenario.silence_timeout, connect=CONNECT),
+                    progress=clock,
+                    warn=lambda text: tell(Warned(text)),
+                )
+            )
+        reason, tick = served.outcome
+        tell(Finished(reason, tick, clock.seconds, served.link, served.timing))
+    except SIDE_ERRORS as error:
+        tell(Failed(str(error), begun or isinstance(error, LINK_LOST)))
+
+
+def station_side(order: Order, tell: Tell) -> None:
+    """The remote station's side."""
+    scenario = Scenario.from_toml(order.scenario)
+    begun = False
+    try:
+        with (
+            open_endpoint(order.url) as endpoint,
+            open_station(scenario, _path(order.key)) as (station, receiver),
+            short_pauses(),
+        ):
+            begun = True
+            listener = Listener(endpoint, receiver)
+            run_station(station, listener, scenario.silence_timeout)
+        tell(Answered(station.report()))
+    except SIDE_ERRORS as error:
+        tell(Failed(str(error), begun or isinstance(error, LINK_LOST)))
+
+
+def _path(name: str | None) -> Path | None:
+    return None if name is None else Path(name)

@@ -1,0 +1,90 @@
+"""The remote station's side of a rehearsal, made from the scenario alone."""
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from laglab.scenario import Scenario
+from laglab_control import Controller, Law, RobotModel, StationConfig
+from laglab_protocol import STATION_COMPONENT, STATION_SYSTEM, Codec, Receiver, Sender, Settings
+from laglab_station import Station
+
+
+def robot_model(scenario: Scenario) -> RobotModel:
+    """What the controller believes of the robot."""
+    return RobotModel(
+        sample_time=scenario.sample_time,
+        wheel_radius=scenario.wheel_radius,
+        track=scenario.track,
+        Q=scenario.wheel_noise_variance * np.eye(2),
+        R=np.diag(scenario.measurement_variance),
+    )
+
+
+def station_config(scenario: Scenario) -> StationConfig:
+    """The remote station's side."""
+    law = Law(
+        goal=scenario.goal,
+        gamma=scenario.gamma,
+        lambda_=scenario.lambda_,
+        h=scenario.h,
+        v_max=scenario.v_max,
+        omega_max=scenario.omega_max,
+        goal_tolerance=scenario.goal_tolerance,
+    )
+    return StationConfig(
+        estimator=scenario.estimator,
+        model=robot_model(scenario),
+        law=law,
+        initial_estimate=scenario.first_estimate(),
+        initial_covariance=scenario.initial_covariance * np.eye(3),
+        command_delay=scenario.command_delay,
+    )
+
+
+def station_settings(scenario: Scenario) -> Settings:
+    """What the robot is told to compare with."""
+    v_max, omega_max = scenario.v_max, scenario.omega_max
+    return Settings(
+        sample_time=scenario.sample_time,
+        wheel_radius=scenario.wheel_radius,
+        track=scenario.track,
+        v_max=math.inf if v_max is None else v_max,
+        omega_max=math.inf if omega_max is None else omega_max,
+        command_delay=scenario.command_delay,
+        measurement_delay=scenario.measurement_delay,
+    )
+
+
+def make_station(
+    scenario: Scenario,
+    sender: Sender,
+    controller: Callable[[StationConfig], Controller] = Controller,
+) -> Station:
+    """The station's core, whose frames `sender` makes."""
+    return Station(
+        station_config(scenario),
+        controller,
+        clock=time.monotonic_ns,
+        sender=sender,
+        settings=station_settings(scenario),
+    )
+
+
+class OpenStation(NamedTuple):
+    """The remote station's side, and what it listens with."""
+
+    station: Station
+    receiver: Receiver
+
+
+@contextmanager
+def open_station(scenario: Scenario, key: Path | None = None) -> Iterator[OpenStation]:
+    """The remote station's side, its frames signed with a key."""
+    with Codec(STATION_SYSTEM, STATION_COMPONENT, key) as codec:
+        yield OpenStation(make_station(scenario, codec.sender), codec.receiver)

@@ -1,0 +1,41 @@
+"""A whole run, both sides, its record in a folder."""
+
+from collections.abc import Callable
+from contextlib import closing
+from pathlib import Path
+
+from laglab.runs.ending import Ending
+from laglab.runs.rehearse import Transport, rehearse_apart, rehearse_inline
+from laglab.runs.robot_side import Setup
+from laglab.scenario import Scenario
+from laglab_gateway import FileRecorder, TraceError
+
+
+def run_into(
+    directory: Path,
+    scenario: Scenario,
+    transport: Transport,
+    told: Callable[[int], None],
+    setup: Setup | None = None,
+) -> Ending:
+    """Both sides to the end; `told` of the ticks. What breaks is in the ending."""
+    ending = _ending(directory, scenario, transport, told, setup)
+    if ending.outcome:
+        told(ending.outcome.tick)
+    return ending
+
+
+def _ending(
+    directory: Path,
+    scenario: Scenario,
+    transport: Transport,
+    told: Callable[[int], None],
+    setup: Setup | None,
+) -> Ending:
+    if transport != "inline":
+        return rehearse_apart(scenario, transport, directory, told, setup)
+    try:
+        with closing(FileRecorder(directory)) as recorder:
+            return rehearse_inline(scenario, recorder, told, setup)
+    except TraceError as error:
+        return Ending(problem=str(error))
