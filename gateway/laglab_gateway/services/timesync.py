@@ -36,7 +36,7 @@ class Timesyncing:
             return [Timesync(tc1=now_ns, ts1=message.ts1)]
         if message.ts1 == self._asked:
             self._asked = None
-            # The notes' offset is ours minus the peer's; the sign here is the peer's minus ours.
+            # Its clock at the answer, less ours half way between question and answer.
             offset = message.tc1 - (message.ts1 + now_ns) // 2
             self.samples.append(Sample(offset, now_ns - message.ts1))
         return []
