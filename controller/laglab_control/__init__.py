@@ -1,4 +1,7 @@
-"""The mathematics, on numpy alone: model, estimators, laws, prediction over the delays."""
+"""The mathematics, on numpy alone: model, estimators, laws, prediction over the delays.
+
+A number in brackets, such as (28), is an equation of docs/theory.md, in this and every component.
+"""
 
 from laglab_control.angle import wrap
 from laglab_control.controller import Control, Controller, StationConfig

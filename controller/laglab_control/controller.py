@@ -57,7 +57,7 @@ class Control(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Controller:
-    """Step 3 of a tick, as pure functions.
+    """Step 3 of a tick (docs/tick.md), as pure functions.
 
     At tick 0 `answer(start(), ...)`; at every later tick `answer(advance(control), ...)`.
     """

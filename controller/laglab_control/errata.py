@@ -1,4 +1,7 @@
-"""The misprints of the paper that concern the filter, each a switch to see what it costs."""
+"""The misprints of the paper that concern the filter, each a switch to see what it costs.
+
+Why each is one: docs/theory.md, "Errata".
+"""
 
 from dataclasses import dataclass
 from enum import Enum

@@ -1,4 +1,4 @@
-"""The robot of section 2 as a model for the filters."""
+"""The robot (1), (3) as a model for the filters; its Jacobians and noise (30) to (33)."""
 
 from dataclasses import dataclass, field
 from functools import cached_property

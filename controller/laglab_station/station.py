@@ -43,8 +43,8 @@ class Station:
     arrive gets none: the robot will repeat it. Everything else that arrives is passed over, and so
     is every other sender once a robot was heard. A robot first heard at tick 0 starts where the
     station was told; one that is already under way, or was not heard for LONGEST_GAP ticks, is
-    taken over from a standstill (`joining`), and the tick at which its pose is known is tick 0 of
-    section 3. One whose ticks begin again is met anew.
+    taken over from a standstill (`joining`), and the tick at which its pose is known is its tick 0
+    (docs/tick.md). One whose ticks begin again is met anew.
     """
 
     def __init__(

@@ -1,7 +1,7 @@
 """The robot as a Functional Mock-up Unit: its build, and the stepper that drives it.
 
-The plant is equations (1) and (3) of the paper with wheel and sensor noise; `Robot` steps it by
-one sample, `Fleet` many of them at once. What needs FMPy is loaded when it is first used: who only
+The plant is (1) and (3) of docs/theory.md with wheel and sensor noise; `Robot` steps it by one
+sample, `Fleet` many of them at once. What needs FMPy is loaded when it is first used: who only
 talks to a robot does without.
 """
 

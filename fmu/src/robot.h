@@ -1,4 +1,4 @@
-/* The differential-drive robot: equations (1) and (3), with wheel and sensor noise on a grid of samples.
+/* The differential-drive robot: (1) and (3) of docs/theory.md, with wheel and sensor noise on a grid of samples.
  *
  * SI units, angles counter-clockwise. Every field is eight bytes wide, so a Robot has no padding and copies of it
  * compare by their bytes. The fields' meanings, units and bounds are those of the table of variables.

@@ -1,6 +1,6 @@
 """A plant that is stepped, at the end of the link: bytes and a tick in, bytes out.
 
-One tick (the order is the specification's): `open_tick` samples the sensor and gives the frames
+One tick (in the order of docs/tick.md): `open_tick` samples the sensor and gives the frames
 for the station; `receive` takes the station's bytes; `settle` lets the commands that are due come
 into force and sets the plant going; `close_tick` says what happened. `settle` comes right after
 `open_tick`, so what arrives during a tick counts from the next one on; only in lock-step with

@@ -1,4 +1,4 @@
-"""The loop of section 3 in plain numpy: an independent plant for the controller to drive."""
+"""The loop of docs/tick.md in plain numpy: an independent plant for the controller to drive."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -112,7 +112,7 @@ def _simulate(
 
 
 def _plant(x: Array, u: Array, random: np.random.Generator | None) -> Array:
-    """Section 1, through the wheel speeds."""
+    """(1) and (3), through the wheel speeds."""
     r, L, Ts = 0.05, 0.6, 0.01
     wheels = np.array([u[0] - u[1] * L / 2, u[0] + u[1] * L / 2]) / r
     if random is not None:

@@ -1,4 +1,4 @@
-"""The facts of the specification, each found again in a loop around the real controller."""
+"""The facts of docs/theory.md, each found again in a loop around the real controller."""
 
 import numpy as np
 import pytest

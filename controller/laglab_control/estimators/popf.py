@@ -163,7 +163,7 @@ def delay_limit(m: int) -> float:
     """The gain above which (11) with a delay of m ticks is unstable, for a scalar at rest.
 
     x~_{k+1} = x~_k - K x~_{k-m} has its roots inside the unit circle for 0 < K < this limit
-    (Levin and May 1976).
+    (Levin and May 1976; docs/theory.md, "The delay limit of the gain").
     """
     return 2 * math.sin(math.pi / (2 * (2 * m + 1)))
 

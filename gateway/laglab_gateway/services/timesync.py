@@ -35,7 +35,7 @@ class Timesyncing:
             return [Timesync(tc1=now_ns, ts1=message.ts1)]
         if message.ts1 == self._asked:
             self._asked = None
-            # The peer's clock minus ours, if the way there takes as long as the way back.
+            # Its clock at the answer, less ours half way between question and answer.
             self._offsets.append(message.tc1 - (message.ts1 + now_ns) // 2)
             self._round_trips.add(now_ns - message.ts1)
         return []

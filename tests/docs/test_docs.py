@@ -1,0 +1,146 @@
+"""The pages in docs/ and the code agree: links, names, commands and equation numbers exist."""
+
+import ast
+import pkgutil
+import re
+import shlex
+import tokenize
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import typer
+
+from laglab.command import app
+from laglab_control import Erratum
+from laglab_control.estimators.popf import delay_limit
+
+ROOT = Path(__file__).parents[2]
+COMPONENTS = ("fmu", "protocol", "gateway", "controller", "rehearsal", "examples", "tests")
+PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("*/*.md"), *ROOT.glob("examples/*/*.md")])
+THEORY = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
+GLOSSARY = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")
+
+EQUATION = re.compile(r"(?<![\w)\]])\((\d{1,2})\)")
+CITED_PAGE = re.compile(r"\bdocs/\w+\.md")
+
+
+def named(path: Path) -> str:
+    return str(path.relative_to(ROOT))
+
+
+def prose(page: Path) -> str:
+    """The page without its blocks of code."""
+    return re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+
+
+def blocks(page: str) -> list[str]:
+    return re.findall(r"^```\w*\n(.*?)^```", page, flags=re.M | re.S)
+
+
+def anchors(page: Path) -> set[str]:
+    """What a forge makes of the headings: lower case, hyphens, nothing but words."""
+    headings = re.findall(r"^#+ (.*)$", prose(page), flags=re.M)
+    return {re.sub(r"[^\w -]", "", each.lower()).replace(" ", "-") for each in headings}
+
+
+def table(page: str, heading: str) -> list[list[str]]:
+    """The cells of the first table below a heading, without its head."""
+    found = re.search(r"(^\|.*\n)+", page[page.index(f"## {heading}\n") :], flags=re.M)
+    assert found, f"no table below {heading}"
+    return [[cell.strip() for cell in row[1:-1].split("|")] for row in found[0].splitlines()[2:]]
+
+
+def comments(path: Path) -> Iterator[str]:
+    """Docstrings and comments of a Python file."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
+            yield str(node.value.value)
+    with path.open("rb") as file:
+        for token in tokenize.tokenize(file.readline):
+            if token.type == tokenize.COMMENT:
+                yield token.string
+
+
+@pytest.mark.parametrize("page", PAGES, ids=named)
+def test_links_lead_somewhere(page: Path) -> None:
+    for link in re.findall(r"\]\(([^)\s]+)\)", prose(page)):
+        if re.match(r"\w+:", link):
+            continue
+        place, _, anchor = link.partition("#")
+        target = (page.parent / place).resolve() if place else page
+        assert target.exists(), link
+        assert not anchor or anchor in anchors(target), link
+
+
+def test_the_readme_leads_to_every_page() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    for page in ROOT.glob("docs/*.md"):
+        assert f"](docs/{page.name})" in readme
+
+
+@pytest.mark.parametrize("component", COMPONENTS)
+def test_pages_that_the_code_cites_are_there(component: str) -> None:
+    for pattern in ("*.py", "*.c", "*.h", "*.toml"):
+        for path in (ROOT / component).rglob(pattern):
+            for cited in CITED_PAGE.findall(path.read_text(encoding="utf-8")):
+                assert (ROOT / cited).exists(), f"{named(path)} cites {cited}"
+
+
+def test_the_equations_are_all_there_each_once() -> None:
+    lines = [line for block in blocks(THEORY) for line in block.splitlines()]
+    numbers = [int(found[1]) for line in lines if (found := re.search(r" \((\d+)\)$", line))]
+    assert sorted(numbers) == list(range(1, 34))
+
+
+@pytest.mark.parametrize("component", ["controller", "fmu", "rehearsal"])
+def test_equations_that_the_code_cites_are_there(component: str) -> None:
+    there = {int(number) for block in blocks(THEORY) for number in EQUATION.findall(block)}
+    cited = {
+        (named(path), int(number))
+        for path in (ROOT / component).rglob("*.py")
+        for text in comments(path)
+        for number in EQUATION.findall(text)
+    }
+    assert cited
+    assert not {(path, number) for path, number in cited if number not in there}
+
+
+def test_every_switch_of_the_errata_is_in_their_table() -> None:
+    rows = {row[0] for row in table(THEORY, "Errata")}
+    assert {erratum.equation for erratum in Erratum} <= rows
+
+
+def test_the_delay_limits_are_those_of_the_code() -> None:
+    for m, largest in table(THEORY, "The delay limit of the gain"):
+        assert f"{delay_limit(int(m)):.3f}" == largest
+
+
+def test_each_word_has_one_meaning() -> None:
+    words = re.findall(r"^\| ([^|]+) \| [A-Z]", GLOSSARY, flags=re.M)
+    assert len(words) > 50
+    assert len(words) == len(set(words))
+
+
+def names() -> list[str]:
+    found = [re.findall(r"`(laglab(?:_\w+)?(?:\.\w+)*)`", prose(page)) for page in PAGES]
+    said = {name for each in found for name in each if "_" in name or "." in name}
+    return sorted(said - {"laglab.xml"})
+
+
+@pytest.mark.parametrize("name", names())
+def test_names_in_the_pages_exist(name: str) -> None:
+    pkgutil.resolve_name(name)
+
+
+def commands() -> list[str]:
+    found = [re.findall(r"`laglab ([a-z][^`]*)`", prose(page)) for page in ROOT.glob("docs/*.md")]
+    return sorted({re.sub(r"\s+", " ", command) for each in found for command in each})
+
+
+@pytest.mark.parametrize("command", commands())
+def test_commands_in_the_pages_are_understood(command: str) -> None:
+    """Read as typed, and not run: some of them take a minute."""
+    group = typer.main.get_command(app)
+    name, *arguments = shlex.split(command)
+    group.commands[name].make_context(name, arguments)  # type: ignore[attr-defined]
