@@ -5,15 +5,14 @@ does falls on all alike and drops out of the ratios.
 """
 
 import itertools
-import shutil
 import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
+from laglab_fmu import c_compiler
 from laglab_protocol.dialect.generated import laglab as pymavlink
 from laglab_protocol.dialect.mavgen import dialect_path, generate
 from laglab_protocol.framing.receiver import Receiver
@@ -132,14 +131,12 @@ def _decode_theirs(signed: bool) -> Block:
 
 
 def _bench_c() -> list[float]:
-    """Encode, decode, the same signed in mavgen's C [us]: -O2, the host's compiler or ziglang."""
-    compiler = shutil.which("cc")
-    command = [compiler] if compiler else [sys.executable, "-m", "ziglang", "cc"]
+    """Encode, decode, the same signed in mavgen's C [us]: -O2."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         generate(dialect_path(), "C", folder / "include")
         program = folder / "bench"
         flags = [*C_FLAGS, "-isystem", str(folder / "include")]
-        subprocess.run([*command, *flags, str(C_PROGRAM), "-o", str(program)], check=True)
+        subprocess.run([*c_compiler(), *flags, str(C_PROGRAM), "-o", str(program)], check=True)
         told = subprocess.run([program], check=True, capture_output=True, text=True).stdout
     return [float(microseconds) for microseconds in told.split()]

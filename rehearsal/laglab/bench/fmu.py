@@ -12,10 +12,10 @@ from typing import NamedTuple
 import fmpy
 import numpy as np
 
-from laglab_fmu.compiler import compile_library, host_platform, zig_compiler
+from laglab_fmu import c_compiler
+from laglab_fmu.compiler import compile_library, host_platform
 from laglab_fmu.contents import c_files
 from laglab_fmu.fleet import Fleet
-from laglab_fmu.host import host_compiler
 from laglab_fmu.parameters import RobotParameters
 from laglab_fmu.robot import Robot
 from laglab_fmu.slave import VERSIONS, fmu_path
@@ -165,9 +165,7 @@ def _compile_plain_loop(stack: ExitStack) -> Path:
     needed["plain_loop.c"] = Path(__file__).with_name("plain_loop.c").read_bytes()
     for name, text in needed.items():
         (folder / name).write_bytes(text)
-    platform = host_platform()
-    library = f"plain_loop{platform.suffix}"
-    compiler = host_compiler() or zig_compiler(platform)
+    library = f"plain_loop{host_platform().suffix}"
     sources = sorted(name for name in needed if name.endswith(".c"))
-    compile_library(folder, sources, library, compiler)
+    compile_library(folder, sources, library, c_compiler())
     return folder / library
