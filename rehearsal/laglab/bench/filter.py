@@ -17,6 +17,7 @@ from laglab_control import (
     DelayedEkf,
     Echo,
     Estimator,
+    LiteralPopf,
     ReplayedInputs,
     RobotModel,
     StationConfig,
@@ -77,7 +78,7 @@ def filters() -> dict[str, Turn]:
     contenders: dict[str, Turn] = {
         name: partial(_estimator_turn, ESTIMATORS[name].make(model)) for name in OURS
     }
-    contenders["popf, product taken anew"] = _literal_popf_turn
+    contenders["popf, product taken anew"] = partial(_estimator_turn, LiteralPopf(model))
     contenders["EKF rerun over window"] = partial(
         _estimator_turn, DelayedEkf(model, ReplayedInputs(model))
     )
@@ -118,28 +119,6 @@ def _controller_turn(name: str, drive: Drive, m: int) -> float:
         in_force.append(coming.popleft())
         echoes = [Echo(k - m - 1, *in_force[k - m - 1])] if k > m else []
         control = controller.answer(controller.advance(control), measurements, echoes)
-    return (time.perf_counter() - started) / (len(drive.inputs) - m)
-
-
-def _literal_popf_turn(drive: Drive, m: int) -> float:
-    """(27), (28) as they stand: M* is a product of m factors, taken anew at every tick."""
-    model, x, P, K = RobotModel(), START, P_0, np.zeros((3, 3))
-    priors, factors = [(x, P)], []
-    started = 0.0
-    for k, u in enumerate(drive.inputs, start=1):
-        started = time.perf_counter() if k == m + 1 else started
-        factors.append(model.A(x, u).dot(np.eye(3) - K))
-        x, P = model.predict(x, P, u)
-        priors.append((x, P))
-        if k >= m:
-            x_s, P_s = priors[k - m]
-            M = np.eye(3)
-            for factor in reversed(factors[k - m :]):
-                M = M.dot(factor)
-            K = M.dot(P_s).dot(np.linalg.inv(P_s + model.R))
-            x = x + K.dot(model.innovation(drive.measurements[k - m], x_s))
-            P = P - K.dot(P_s).dot(M.T)
-            P = (P + P.T) / 2
     return (time.perf_counter() - started) / (len(drive.inputs) - m)
 
 
