@@ -1,7 +1,7 @@
 """The mathematics, on numpy alone: model, estimators, laws, prediction over the delays."""
 
 from laglab_control.angle import wrap
-from laglab_control.controller import Control, Controller, StationConfig
+from laglab_control.controller import INITIAL_VARIANCE, Control, Controller, StationConfig
 from laglab_control.errata import Erratum, PrintedController
 from laglab_control.errors import ConfigError, ControlError, StampError
 from laglab_control.estimators import (
@@ -27,6 +27,7 @@ from laglab_control.robot import RobotModel
 
 __all__ = [
     "ESTIMATORS",
+    "INITIAL_VARIANCE",
     "Applied",
     "ConfigError",
     "Control",

@@ -7,7 +7,14 @@ from pathlib import Path
 import pytest
 from fmpy import read_model_description
 
-from laglab_fmu import BuildError, CompilerNotFoundError, build_fmus, c_compiler, contents
+from laglab_fmu import (
+    BuildError,
+    CompilerNotFoundError,
+    RobotParameters,
+    build_fmus,
+    c_compiler,
+    contents,
+)
 from laglab_fmu import compiler as compiler_module
 
 
@@ -37,6 +44,15 @@ def test_both_versions_tell_the_same_of_every_variable(fmus: dict[str, Path]) ->
         ]
 
     assert table(two) == table(three)
+
+
+@pytest.mark.parametrize("name", ["Robot2", "Robot3"])
+def test_a_robot_left_alone_has_the_default_parameters(fmus: dict[str, Path], name: str) -> None:
+    variables = read_model_description(str(fmus[name])).modelVariables
+    starts = {v.name: v.start for v in variables if v.causality == "parameter"}
+    truth = {"true": 1.0, "false": 0.0}
+    told = {key: truth[start] if start in truth else float(start) for key, start in starts.items()}
+    assert told == RobotParameters().by_name()
 
 
 def test_the_compiler_is_the_one_asked_for_and_ziglang_the_last(

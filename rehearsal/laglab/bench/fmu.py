@@ -161,7 +161,11 @@ def _plain(robots: int, ticks: int, stack: ExitStack) -> Measure:
 
 def _compile_plain_loop(stack: ExitStack) -> Path:
     folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="laglab-bench-")))
-    needed = {name: text for name, text in c_files().items() if name[:5] in ("robot", "noise")}
+    needed = {
+        name: text
+        for name, text in c_files().items()
+        if name.endswith(".h") or name.startswith(("robot", "noise"))
+    }
     needed["plain_loop.c"] = Path(__file__).with_name("plain_loop.c").read_bytes()
     for name, text in needed.items():
         (folder / name).write_bytes(text)

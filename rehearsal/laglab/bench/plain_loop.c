@@ -2,6 +2,7 @@
 #include <stdlib.h>
 
 #include "robot.h"
+#include "variables.h"
 
 #ifdef _WIN32
 #define EXPORT __declspec(dllexport)
@@ -16,12 +17,13 @@ EXPORT Robot *plain_start(size_t count) {
     Robot *robots = calloc(count, sizeof *robots);
     for (size_t i = 0; robots && i < count; i++) {
         Robot *robot = &robots[i];
-        robot->wheel_radius = 0.05;
-        robot->track = 0.6;
-        robot->sample_time = 0.01;
-        robot->wheel_noise_variance = 0.01;
-        robot->measurement_variance_x = robot->measurement_variance_y = 0.01;
-        robot->measurement_variance_theta = 0.018;
+        robot->wheel_radius = VARIABLE[VR_WHEEL_RADIUS].start;
+        robot->track = VARIABLE[VR_TRACK].start;
+        robot->sample_time = VARIABLE[VR_SAMPLE_TIME].start;
+        robot->wheel_noise_variance = VARIABLE[VR_WHEEL_NOISE_VARIANCE].start;
+        robot->measurement_variance_x = VARIABLE[VR_MEASUREMENT_VARIANCE_X].start;
+        robot->measurement_variance_y = VARIABLE[VR_MEASUREMENT_VARIANCE_Y].start;
+        robot->measurement_variance_theta = VARIABLE[VR_MEASUREMENT_VARIANCE_THETA].start;
         robot->noise = 1;
         robot->integration = INTEGRATION_EULER;
         robot->seed = (int64_t)i + 1;
