@@ -17,19 +17,14 @@ from laglab.commands import (
     serial,
     sides,
 )
+from laglab.commands.group import group
 from laglab.errors import LaglabError, RunError, ScenarioError
 from laglab.run.processes import SIDE_ERRORS
 from laglab_gateway import RobotSilentError, StationSilentError
 from laglab_protocol import FarEndGoneError, FarEndStalledError
 from laglab_station import StationError
 
-app = typer.Typer(
-    help="A rehearsal rig for robots controlled across a network.",
-    no_args_is_help=True,
-    rich_markup_mode=None,
-    pretty_exceptions_enable=False,
-    add_completion=False,
-)
+app = group("A rehearsal rig for robots controlled across a network.")
 app.command("run")(run.run)
 app.command("replay")(replay.replay)
 app.command("scenarios")(scenarios.scenarios)

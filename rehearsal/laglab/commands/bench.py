@@ -8,11 +8,12 @@ from rich.table import Table
 
 from laglab.bench import codec as codec_bench
 from laglab.bench import filter as filter_bench
+from laglab.commands.group import group
 from laglab.extras import STEPPING, require
 
 Link = Literal["udp", "serial"]
 
-app = typer.Typer(help="Ratios, measured side by side in one run.", no_args_is_help=True)
+app = group("Ratios, measured side by side in one run.")
 
 
 @app.command("loop")
