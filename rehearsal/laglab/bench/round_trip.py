@@ -6,7 +6,7 @@ import tty
 from collections.abc import Callable
 from multiprocessing.connection import Connection
 from time import perf_counter
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from laglab.run.processes import started
 from laglab_protocol import Command, Estimate, Measurement, Message, Sender, Tick
@@ -15,6 +15,7 @@ POSE = (0.1, 0.1, 0.1)
 COVARIANCE = (0.1, 0.1, 0.1, 0.1, 0.1, 0.1)
 """Any doubles whose last byte is not zero, so that no frame is cut short."""
 
+Link = Literal["udp", "serial"]
 Send = Callable[[bytes], object]
 Receive = Callable[[int], bytes]
 """At most so many bytes."""
@@ -41,9 +42,9 @@ def _size(messages: list[Message]) -> int:
     return sum(len(sender.frame(message)) for message in messages)
 
 
-def seconds_per_echo(transport: str, sizes: Sizes, ticks: int) -> float:
+def seconds_per_echo(link: Link, sizes: Sizes, ticks: int) -> float:
     """Wall time [s] of one round trip, over `ticks` of them."""
-    return _over_udp(sizes, ticks) if transport == "udp" else _over_pty(sizes, ticks)
+    return _over_udp(sizes, ticks) if link == "udp" else _over_pty(sizes, ticks)
 
 
 def _over_udp(sizes: Sizes, ticks: int) -> float:
