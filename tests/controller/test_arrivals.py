@@ -14,11 +14,11 @@ from laglab_control import (
     PopfExact,
     Rewinding,
     RigidMotions,
-    RobotModel,
     StampError,
 )
 
-ROBOT = RobotModel()
+from .textbook import ROBOT, ekf_in_order
+
 TICKS = 50
 RANDOM = np.random.default_rng(11)
 INPUTS = RANDOM.normal(size=(TICKS, 2)) * 2
@@ -46,20 +46,6 @@ def run(estimator, arrivals):
     return state
 
 
-def in_order(arrivals):
-    """An EKF with everything that arrived, each at its own tick."""
-    x, P = X_0, P_0
-    arrived = {s for batch in arrivals.values() for s in batch}
-    for k in range(TICKS + 1):
-        if k:
-            A, W = ROBOT.A(x, INPUTS[k - 1]), ROBOT.W(x)
-            x, P = ROBOT.f(x, INPUTS[k - 1]), A @ P @ A.T + W @ ROBOT.Q @ W.T
-        if k in arrived:
-            K = P @ np.linalg.inv(P + ROBOT.R)
-            x, P = x + K @ ROBOT.innovation(MEASUREMENTS[k], x), (np.eye(3) - K) @ P
-    return x, P
-
-
 @st.composite
 def links(draw):
     """For each measurement the delays of its copies: none is a loss, two a repeat."""
@@ -82,7 +68,8 @@ def test_popf_does_what_its_equations_say(arrivals):
 @settings(max_examples=40, deadline=None)
 @given(links())
 def test_delayed_ekf_is_the_ekf_that_had_everything_in_order(arrivals):
-    x, P = in_order(arrivals)
+    used = {s: MEASUREMENTS[s] for batch in arrivals.values() for s in batch}
+    x, P = ekf_in_order(X_0, P_0, INPUTS, used)
     state = run(DelayedEkf(ROBOT, RigidMotions(ROBOT)), arrivals)
     assert np.abs(state.x - x).max() < 1e-10
     assert np.abs(state.P - P).max() < 1e-10

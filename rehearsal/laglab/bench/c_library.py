@@ -30,7 +30,8 @@ def c_library(
     folder = new_folder(stack)
     for name, text in beside.items():
         (folder / name).write_bytes(text)
-    shutil.copy(Path(__file__).with_name(source), folder)
+    for name in (source, "export.h"):
+        shutil.copy(Path(__file__).with_name(name), folder)
     library = Path(source).with_suffix(host_platform().suffix).name
     sources = sorted(path.name for path in folder.glob("*.c"))
     compile_library(folder, sources, library, c_compiler(), headers)

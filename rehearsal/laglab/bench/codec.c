@@ -2,11 +2,7 @@
 #include <string.h>
 #include <laglab/mavlink.h>
 
-#ifdef _WIN32
-#define EXPORT __declspec(dllexport)
-#else
-#define EXPORT __attribute__((visibility("default")))
-#endif
+#include "export.h"
 
 enum { MOST = 4096, LONGEST = 80 };
 enum { SENDER = MAVLINK_COMM_0, RECEIVER = MAVLINK_COMM_1, SIGNING_SENDER = MAVLINK_COMM_2, VERIFIER = MAVLINK_COMM_3 };

@@ -1,14 +1,9 @@
 /* The model without FMI: what a loop in C over robots costs. */
 #include <stdlib.h>
 
+#include "export.h"
 #include "robot.h"
 #include "variables.h"
-
-#ifdef _WIN32
-#define EXPORT __declspec(dllexport)
-#else
-#define EXPORT __attribute__((visibility("default")))
-#endif
 
 enum { READINGS = 8 };
 
