@@ -21,7 +21,8 @@ def bench(ticks: int, realtime: float, links: Sequence[Link] = LINKS) -> Bench:
     """Runs of so many ticks, with a filter in the loop and with none; at the end, for `realtime`
     seconds, one that keeps to the clock."""
     cases = {f"{link}, {name}": _ways(link, name, ticks) for link in links for name in ESTIMATORS}
-    contest = Contest("the loop, n = 10, m = 20", TICK, OURS, cases)
+    n, m, *_ = loop_of(loop_scenario(ESTIMATORS[0], ticks))
+    contest = Contest(f"the loop, n = {n}, m = {m}", TICK, OURS, cases)
 
     def figures(results: Sequence[Result], progress: Progress) -> list[Figure]:
         progress("real time")

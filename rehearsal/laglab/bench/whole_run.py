@@ -34,7 +34,7 @@ class Lateness(NamedTuple):
 
 
 def loop_scenario(estimator: str, ticks: int) -> Scenario:
-    """n = 10 and m = 20, noise on; an estimator in the loop or none, within the same limits."""
+    """The delays, limits and noise of `lab`; an estimator in the loop, or none."""
     return load(
         "lab",
         {
