@@ -4,7 +4,6 @@ With LAGLAB_ALL_PLATFORMS=1 the wheel holds binaries for every platform: the one
 """
 
 import os
-import runpy
 import sys
 import sysconfig
 from pathlib import Path
@@ -13,6 +12,10 @@ from typing import Any
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE))
+
+from laglab_fmu.compiler import PLATFORMS, host_compiler  # noqa: E402 needs nothing installed
+
 FMPY, ZIGLANG = "fmpy>=0.3.30", "ziglang>=0.13"
 
 
@@ -23,18 +26,14 @@ class FmuBuildHook(BuildHookInterface[Any]):
         """fmpy brings the FMI headers; ziglang compiles for others, or where nothing else does."""
         if self.target_name != "wheel":
             return []
-        # The package itself cannot be imported yet: what it needs is what is being asked for.
-        host = runpy.run_path(str(HERE / "laglab_fmu" / "host.py"))
-        enough = host["host_compiler"]() and not _for_all_platforms()
+        enough = host_compiler() and not _for_all_platforms()
         return [FMPY] if enough else [FMPY, ZIGLANG]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Builds into the package folder: hatchling and an editable installation find it there."""
         if self.target_name != "wheel":
             return
-        sys.path.insert(0, str(HERE))
-        from laglab_fmu.build import build_fmus
-        from laglab_fmu.compiler import PLATFORMS
+        from laglab_fmu.build import build_fmus  # needs what `dependencies` asks for
 
         build_fmus(HERE / "laglab_fmu", PLATFORMS if _for_all_platforms() else ())
         build_data["pure_python"] = _for_all_platforms()

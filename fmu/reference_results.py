@@ -9,7 +9,8 @@ import numpy as np
 from fmpy import simulate_fmu
 from fmpy.util import read_csv, write_csv
 
-from laglab_fmu import fmu_path
+from laglab_fmu import RobotParameters, fmu_path
+from laglab_fmu.description import STOP_TIME
 
 CONTENT = Path(__file__).parent / "content"
 
@@ -18,7 +19,11 @@ def results(fmu: Path) -> np.ndarray:
     """The default experiment in co-simulation, as a structured array with `time` first."""
     inputs = read_csv(CONTENT / "Robot_in.csv")
     return simulate_fmu(
-        str(fmu), fmi_type="CoSimulation", input=inputs, stop_time=10.0, output_interval=0.01
+        str(fmu),
+        fmi_type="CoSimulation",
+        input=inputs,
+        stop_time=STOP_TIME,
+        output_interval=RobotParameters.sample_time,
     )
 
 

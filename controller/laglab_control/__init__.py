@@ -4,7 +4,7 @@ A number in brackets, such as (28), is an equation of docs/theory.md, in this an
 """
 
 from laglab_control.angle import wrap
-from laglab_control.controller import Control, Controller, StationConfig
+from laglab_control.controller import INITIAL_VARIANCE, Control, Controller, StationConfig
 from laglab_control.errata import Erratum, PrintedController
 from laglab_control.errors import ConfigError, ControlError, StampError
 from laglab_control.estimators import (
@@ -13,6 +13,7 @@ from laglab_control.estimators import (
     DelayedEkf,
     Ekf,
     Estimator,
+    LiteralPopf,
     Measured,
     Popf,
     PopfExact,
@@ -29,6 +30,7 @@ from laglab_control.robot import RobotModel
 
 __all__ = [
     "ESTIMATORS",
+    "INITIAL_VARIANCE",
     "Applied",
     "ConfigError",
     "Control",
@@ -41,6 +43,7 @@ __all__ = [
     "Erratum",
     "Estimator",
     "Law",
+    "LiteralPopf",
     "Measured",
     "Model",
     "NonlinearModel",

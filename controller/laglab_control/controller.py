@@ -18,6 +18,8 @@ from laglab_control.model import Vector, constant
 from laglab_control.motion import Way, joined
 from laglab_control.robot import RobotModel
 
+INITIAL_VARIANCE = 1e-4
+"""P_0 = INITIAL_VARIANCE I by default [m^2, m^2, rad^2]."""
 DIVERGED = 1000.0
 """[m] from the origin: no estimate of a robot that a run is about is ever there."""
 
@@ -33,7 +35,7 @@ class StationConfig:
     model: RobotModel = field(default_factory=RobotModel)
     law: Law = field(default_factory=Law)
     initial_estimate: ArrayLike = (0.0, 0.0, 0.0)
-    initial_covariance: ArrayLike = field(default_factory=lambda: np.eye(3) * 1e-4)
+    initial_covariance: ArrayLike = field(default_factory=lambda: np.eye(3) * INITIAL_VARIANCE)
     command_delay: int = 0
     """n, until the stamps tell: n is estimated from the command that each measurement echoes, and
     the delay m of a measurement is read from its own stamp."""

@@ -5,6 +5,8 @@ from contextlib import suppress
 from time import monotonic, sleep
 
 from laglab_protocol import (
+    ROBOT_COMPONENT,
+    ROBOT_SYSTEM,
     End,
     EndpointError,
     EndReason,
@@ -22,6 +24,11 @@ HEARTBEAT_PERIOD = 0.1
 
 CALL_AGAIN = 0.5
 """[s] A robot that says nothing for so long may have begun again, and wait for a heartbeat."""
+
+IN_FORCE = 1.0
+"""[s] Heard so lately, a robot keeps its station: nobody at another address takes its place."""
+
+ROBOT = ROBOT_SYSTEM, ROBOT_COMPONENT
 
 PATIENT_WITH_KEYS = 1.0
 """[s] After so long without a frame that we may take, we say how many we may not."""
@@ -126,7 +133,6 @@ class _Loop:
             return False
         answer = self._station.hear(frames)
         if answer:
-            self._link.accept_peer()
             self._link.send(b"".join(answer))
             self._station.look_ahead()
         self._onlooker.said([frame.raw for frame in frames] + answer, self._station.tick)
@@ -142,9 +148,14 @@ class _Loop:
         except FarEndGoneError as error:
             self._reopen(error)
             return []
+        frames = [frame for frame in frames if (frame.system, frame.component) == ROBOT]
         now, link = monotonic(), self._link
-        if not frames or (link.sender != link.peer and link.peer and now - self._heard < 1.0):
+        if not frames:
             return []
+        if link.sender != link.peer:
+            if link.peer is not None and now - self._heard < IN_FORCE:
+                return []
+            link.accept_peer()  # who knocks is to hear our heartbeats
         self._heard = now
         return frames
 

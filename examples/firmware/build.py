@@ -5,11 +5,11 @@ CFLAGS in the environment are added to our own.
 
 import os
 import shlex
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+from laglab_fmu import c_compiler
 from laglab_protocol.dialect.mavgen import dialect_path, generate
 
 HERE = Path(__file__).parent
@@ -20,10 +20,9 @@ def build(folder: Path) -> Path:
     """mavgen's headers and the firmware into `folder`; returns the program."""
     generate(dialect_path(), "C", folder / "include")
     program = folder / "firmware"
-    compiler = [cc] if (cc := shutil.which("cc")) else [sys.executable, "-m", "ziglang", "cc"]
     sources = sorted(HERE.glob("*.c"))
     flags = [*STRICT, *shlex.split(os.environ.get("CFLAGS", "")), "-isystem", folder / "include"]
-    command = [*compiler, *flags, *sources, "-lm", "-o", program]
+    command = [*c_compiler(), *flags, *sources, "-lm", "-o", program]
     subprocess.run(command, check=True)
     return program
 

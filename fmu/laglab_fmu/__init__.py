@@ -8,6 +8,7 @@ talks to a robot does without.
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from laglab_fmu.compiler import PLATFORMS, c_compiler
 from laglab_fmu.errors import (
     BuildError,
     CallError,
@@ -19,7 +20,6 @@ from laglab_fmu.parameters import Reading, RobotParameters
 
 if TYPE_CHECKING:
     from laglab_fmu.build import build_fmus
-    from laglab_fmu.compiler import PLATFORMS
     from laglab_fmu.fleet import Fleet
     from laglab_fmu.robot import Robot
     from laglab_fmu.slave import fleet_path, fmu_path
@@ -36,12 +36,12 @@ __all__ = [
     "Robot",
     "RobotParameters",
     "build_fmus",
+    "c_compiler",
     "fleet_path",
     "fmu_path",
 ]
 
 _NEED_FMPY = {
-    "PLATFORMS": "compiler",
     "Fleet": "fleet",
     "Robot": "robot",
     "build_fmus": "build",

@@ -5,9 +5,14 @@ import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from laglab_fmu.compiler import Platform, compile_library, host_platform, zig_compiler
-from laglab_fmu.contents import c_files, fmu_contents
-from laglab_fmu.host import host_compiler
+from laglab_fmu.compiler import (
+    Platform,
+    c_compiler,
+    compile_library,
+    host_platform,
+    zig_compiler,
+)
+from laglab_fmu.contents import c_files, fmi_headers, fmu_contents
 from laglab_fmu.variables import MODEL_NAME
 
 FMUS = ("Robot2", "Robot3", "Fleet3")
@@ -33,8 +38,7 @@ def build_fmus(directory: Path, platforms: Sequence[Platform] = ()) -> list[Path
     if platforms:
         compilers = {platform: zig_compiler(platform) for platform in platforms}
     else:
-        platform = host_platform()
-        compilers = {platform: host_compiler() or zig_compiler(platform)}
+        compilers = {host_platform(): c_compiler()}
     with tempfile.TemporaryDirectory(prefix="laglab-build-") as folder:
         binaries = _compile(Path(folder), compilers)
     directory.mkdir(parents=True, exist_ok=True)
@@ -49,7 +53,7 @@ def _compile(folder: Path, compilers: Mapping[Platform, Sequence[str]]) -> dict[
     binaries = {}
     for platform, compiler in compilers.items():
         library = f"{MODEL_NAME}{platform.suffix}"
-        compile_library(folder, sources, library, compiler)
+        compile_library(folder, sources, library, compiler, fmi_headers())
         binaries[platform] = (folder / library).read_bytes()
     return binaries
 

@@ -1,15 +1,18 @@
-"""Finding a C compiler, and compiling the FMU's shared library with it."""
+"""The C compiler of this machine, or ziglang's, and compiling a shared library with it.
 
+Needs nothing that is not in Python itself: the build hook asks before anything is installed.
+"""
+
+import os
 import platform
 import shlex
+import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-
-import fmpy
 
 from laglab_fmu.errors import BuildError, CompilerNotFoundError
 
@@ -63,6 +66,26 @@ def host_platform() -> Platform:
     )
 
 
+def c_compiler() -> list[str]:
+    """The command of the C compiler to use on this machine, for it: $CC first, ziglang last.
+
+    Raises:
+        CompilerNotFoundError: there is none, ziglang neither.
+        BuildError: there is none but ziglang, and this platform is none of PLATFORMS.
+    """
+    return host_compiler() or zig_compiler(host_platform())
+
+
+def host_compiler() -> list[str] | None:
+    """The host's own: $CC, else cc, gcc or clang on the PATH; None without."""
+    chosen = os.environ.get("CC", "").strip()
+    for candidate in [chosen] if chosen else ["cc", "gcc", "clang"]:
+        words = shlex.split(candidate)
+        if shutil.which(words[0]):
+            return words
+    return None
+
+
 def zig_compiler(target: Platform) -> list[str]:
     """The command of ziglang's C compiler for a platform.
 
@@ -71,31 +94,31 @@ def zig_compiler(target: Platform) -> list[str]:
     """
     if find_spec("ziglang") is None:
         raise CompilerNotFoundError(
-            f"no compiler to build the FMU for {target.system} on {target.machine} with: "
-            "install a C compiler, or `pip install ziglang`"
+            f"no C compiler for {target.system} on {target.machine}: install one, "
+            "or `pip install ziglang`"
         )
     return [sys.executable, "-m", "ziglang", "cc", "-target", target.zig_target]
 
 
 def compile_library(
-    folder: Path, sources: Sequence[str], library: str, compiler: Sequence[str]
+    folder: Path,
+    sources: Sequence[str],
+    library: str,
+    compiler: Sequence[str],
+    headers: Path | None = None,
 ) -> None:
     """Compiles C sources in a folder into one shared library there, which asks for libm itself.
 
     Works in that folder with relative names, so that its place does not show in the library.
+    `headers` is a folder of other people's, whose warnings are theirs.
 
     Raises:
         BuildError: the compiler failed; with what it said.
     """
     shared = ["-shared"] if library.endswith(".dll") else ["-shared", "-fPIC"]
-    includes = ["-isystem", str(fmi_headers())]
-    command = [*compiler, *FLAGS, *REPRODUCIBLE, *shared, *includes, "-o", library, *sources, "-lm"]
+    include = ["-isystem", str(headers)] if headers else []
+    command = [*compiler, *FLAGS, *REPRODUCIBLE, *shared, *include, "-o", library, *sources, "-lm"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
     if done.returncode:
         said = done.stderr.strip()
         raise BuildError(f"compiling {library} failed: {shlex.join(command)}\n{said}")
-
-
-def fmi_headers() -> Path:
-    """The folder of the FMI 2.0 and 3.0 headers, which the installed fmpy carries."""
-    return Path(fmpy.__file__).parent / "c-code"

@@ -8,7 +8,9 @@ from string import Template
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from laglab_fmu.compiler import Platform, fmi_headers
+import fmpy
+
+from laglab_fmu.compiler import Platform
 from laglab_fmu.description import TOKEN, model_description_2, model_description_3, xml_text
 from laglab_fmu.errors import BuildError
 from laglab_fmu.header import variables_header
@@ -46,6 +48,11 @@ def c_files() -> dict[str, bytes]:
     """The C sources of both versions by name, the generated header included."""
     files = {path.name: path.read_bytes() for path in sorted(own_files("src").glob("*.[ch]"))}
     return files | {"variables.h": variables_header(TOKEN).encode()}
+
+
+def fmi_headers() -> Path:
+    """The folder of the FMI 2.0 and 3.0 headers, which the installed fmpy carries."""
+    return Path(fmpy.__file__).parent / "c-code"
 
 
 def fmu_contents(name: str, binaries: Mapping[Platform, bytes]) -> dict[str, bytes]:

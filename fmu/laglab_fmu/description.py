@@ -5,11 +5,12 @@ from collections.abc import Sequence
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
+from laglab_fmu.parameters import INTEGRATIONS
 from laglab_fmu.units import TYPES, UNITS, DeclaredType, Unit
 from laglab_fmu.variables import (
-    INTEGRATIONS,
     MODEL_NAME,
     REFERENCE,
+    START,
     VARIABLES,
     Kind,
     Role,
@@ -21,7 +22,8 @@ TOKEN = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, repr((VARIABLES, TYPES, UNITS))
 
 FLEET_NAME = "Fleet"
 DESCRIPTION = "A differential-drive robot with wheel and sensor noise"
-DEFAULT_EXPERIMENT = {"startTime": "0", "stopTime": "10", "tolerance": "1e-6", "stepSize": "0.01"}
+STOP_TIME = 10.0
+"""[s] of the default experiment."""
 LOG_CATEGORIES = (
     ("logEvents", "Initialization and sample events"),
     ("logStatusDiscard", "Values that were refused"),
@@ -46,6 +48,14 @@ _OUTPUTS = (Role.STATE, Role.SAMPLED, Role.ALGEBRAIC)
 def number(value: float) -> str:
     """A number as XML wants it: integers without a point."""
     return str(int(value)) if value == int(value) else repr(value)
+
+
+DEFAULT_EXPERIMENT = {
+    "startTime": "0",
+    "stopTime": number(STOP_TIME),
+    "tolerance": "1e-6",
+    "stepSize": number(START["sample_time"]),
+}
 
 
 def model_description_2(sources: Sequence[str]) -> bytes:

@@ -4,12 +4,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from typing import NamedTuple
 
-from laglab_fmu.variables import INTEGRATIONS, REFERENCE
+INTEGRATIONS = (
+    ("euler", "One Euler step per sample, equation (3)"),
+    ("exact", "Along the arc"),
+)
+"""How co-simulation moves the robot, and what that means; the FMU counts them from 1."""
+LARGEST_SEED = 2**31 - 1
 
 
 @dataclass(frozen=True)
 class RobotParameters:
-    """Parameters of one robot, SI units. By default the paper's, with every realism option off."""
+    """Parameters of one robot, SI units. By default the paper's, with every realism option off.
+
+    The defaults stand here alone: the model descriptions take their start values from them.
+    """
 
     wheel_radius: float = 0.05
     track: float = 0.6
@@ -43,17 +51,14 @@ class RobotParameters:
         Raises:
             ValueError: `integration` is unknown, `seed` out of range, or a tuple not of three.
         """
-        if not 0 <= self.seed < 2**31:
+        if not 0 <= self.seed <= LARGEST_SEED:
             raise ValueError(f"seed is {self.seed}; it must be in 0 ... 2^31 - 1")
+        numbers = {field.name: getattr(self, field.name) for field in fields(self)}
+        variances, start = numbers.pop("measurement_variance"), numbers.pop("start")
         axes = ("x", "y", "theta")
-        numbers = {
-            f"measurement_variance_{axis}": value
-            for axis, value in zip(axes, self.measurement_variance, strict=True)
-        }
-        numbers |= {f"{axis}_start": value for axis, value in zip(axes, self.start, strict=True)}
-        alike = (field.name for field in fields(self) if field.name in REFERENCE)
-        numbers |= {name: getattr(self, name) for name in alike}
-        return numbers | {"integration": self._integration_number()}
+        numbers |= {f"measurement_variance_{a}": R for a, R in zip(axes, variances, strict=True)}
+        numbers |= {f"{axis}_start": value for axis, value in zip(axes, start, strict=True)}
+        return numbers | {"noise": int(self.noise), "integration": self._integration_number()}
 
     def _integration_number(self) -> int:
         names = [name for name, _ in INTEGRATIONS]

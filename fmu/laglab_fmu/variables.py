@@ -8,7 +8,11 @@ field in the C struct `Robot`.
 from dataclasses import dataclass
 from enum import Enum
 
+from laglab_fmu.parameters import INTEGRATIONS, LARGEST_SEED, RobotParameters
+
 MODEL_NAME = "Robot"
+START = RobotParameters().by_name()
+"""Of the parameters."""
 
 
 class Kind(Enum):
@@ -53,11 +57,6 @@ class Variable:
         return self.name.replace("(", "_").replace(")", "")
 
 
-INTEGRATIONS = (
-    ("euler", "One Euler step per sample, equation (3)"),
-    ("exact", "Along the arc"),
-)
-
 _WHEELS = ("omega_left", "omega_right")
 
 
@@ -86,11 +85,10 @@ def _parameter(
     name: str,
     description: str,
     declared: str,
-    start: float,
     bounds: tuple[float | None, float | None],
     nominal: float,
 ) -> Variable:
-    return Variable(name, Role.PARAMETER, description, declared, start, *bounds, nominal)
+    return Variable(name, Role.PARAMETER, description, declared, START[name], *bounds, nominal)
 
 
 _FREE = (None, None)
@@ -112,34 +110,22 @@ VARIABLES = (
     _derivative("x", "Speed along x", "Speed", "theta"),
     _derivative("y", "Speed along y", "Speed", "theta"),
     _derivative("theta", "Turning speed", "AngularSpeed"),
-    _parameter("wheel_radius", "Nominal wheel radius", "Length", 0.05, (1e-4, 10.0), 0.1),
-    _parameter("track", "Nominal wheel distance", "Length", 0.6, (1e-3, 100.0), 1.0),
-    _parameter("sample_time", "Time between samples", "Duration", 0.01, (1e-6, 100.0), 0.01),
+    _parameter("wheel_radius", "Nominal wheel radius", "Length", (1e-4, 10.0), 0.1),
+    _parameter("track", "Nominal wheel distance", "Length", (1e-3, 100.0), 1.0),
+    _parameter("sample_time", "Time between samples", "Duration", (1e-6, 100.0), 0.01),
+    _parameter("wheel_noise_variance", "Of each wheel's speed", "SpeedVariance", _VARIANCE, 0.01),
+    _parameter("measurement_variance_x", "Of measured x", "PositionVariance", _VARIANCE, 0.01),
+    _parameter("measurement_variance_y", "Of measured y", "PositionVariance", _VARIANCE, 0.01),
     _parameter(
-        "wheel_noise_variance", "Of each wheel's speed", "SpeedVariance", 0.01, _VARIANCE, 0.01
+        "measurement_variance_theta", "Of the measured heading", "HeadingVariance", _VARIANCE, 0.01
     ),
-    _parameter(
-        "measurement_variance_x", "Of measured x", "PositionVariance", 0.01, _VARIANCE, 0.01
-    ),
-    _parameter(
-        "measurement_variance_y", "Of measured y", "PositionVariance", 0.01, _VARIANCE, 0.01
-    ),
-    _parameter(
-        "measurement_variance_theta",
-        "Of the measured heading",
-        "HeadingVariance",
-        0.018,
-        _VARIANCE,
-        0.01,
-    ),
-    _parameter("x_start", "x at the start", "Position", 0.0, _FREE, 1.0),
-    _parameter("y_start", "y at the start", "Position", 0.0, _FREE, 1.0),
-    _parameter("theta_start", "Heading at the start", "Heading", 0.0, _FREE, 1.0),
+    _parameter("x_start", "x at the start", "Position", _FREE, 1.0),
+    _parameter("y_start", "y at the start", "Position", _FREE, 1.0),
+    _parameter("theta_start", "Heading at the start", "Heading", _FREE, 1.0),
     _parameter(
         "wheel_speed_max",
         "Limit of each wheel drive; 0 for none",
         "AngularSpeed",
-        0.0,
         (0.0, 1e6),
         10.0,
     ),
@@ -147,29 +133,28 @@ VARIABLES = (
         "motor_time_constant",
         "First-order lag of the wheel drives; 0 for none",
         "Duration",
-        0.0,
         (0.0, 100.0),
         0.1,
     ),
     _parameter(
-        "wheel_radius_error", "True wheel radius over nominal, less 1", "Ratio", 0.0, _ERROR, 0.01
+        "wheel_radius_error", "True wheel radius over nominal, less 1", "Ratio", _ERROR, 0.01
     ),
-    _parameter("track_error", "True track over nominal, less 1", "Ratio", 0.0, _ERROR, 0.01),
-    _parameter("wheel_slip", "Part of wheel motion lost to slip", "Ratio", 0.0, (0.0, 1.0), 0.01),
+    _parameter("track_error", "True track over nominal, less 1", "Ratio", _ERROR, 0.01),
+    _parameter("wheel_slip", "Part of wheel motion lost to slip", "Ratio", (0.0, 1.0), 0.01),
     Variable(
         "seed",
         Role.PARAMETER,
         "Seed of all noise",
-        start=1,
+        start=START["seed"],
         minimum=0,
-        maximum=2**31 - 1,
+        maximum=LARGEST_SEED,
         kind=Kind.INT32,
     ),
     Variable(
         "noise",
         Role.PARAMETER,
         "false: every variance acts as zero",
-        start=1,
+        start=START["noise"],
         minimum=0,
         maximum=1,
         kind=Kind.BOOLEAN,
@@ -179,7 +164,7 @@ VARIABLES = (
         Role.PARAMETER,
         "How co-simulation moves the robot",
         "Integration",
-        start=1,
+        start=START["integration"],
         minimum=1,
         maximum=len(INTEGRATIONS),
         kind=Kind.ENUMERATION,

@@ -1,5 +1,6 @@
 """The ``laglab`` command."""
 
+import signal
 import sys
 
 import typer
@@ -17,16 +18,12 @@ from laglab.commands import (
     serial,
     sides,
 )
+from laglab.commands.group import group
 from laglab.errors import LaglabError, RunError, ScenarioError
+from laglab.output import guarded, prepare
 from laglab.runs.errors import LINK_LOST, SIDE_ERRORS
 
-app = typer.Typer(
-    help="A rehearsal rig for robots controlled across a network.",
-    no_args_is_help=True,
-    rich_markup_mode=None,
-    pretty_exceptions_enable=False,
-    add_completion=False,
-)
+app = group("A rehearsal rig for robots controlled across a network.")
 app.command("run")(run.run)
 app.command("replay")(replay.replay)
 app.command("scenarios")(scenarios.scenarios)
@@ -42,14 +39,26 @@ app.add_typer(protocol.app, name="protocol")
 app.command("conform")(protocol.conform)
 
 
+INTERRUPTED = 130
+
+
 def main(arguments: list[str] | None = None) -> None:
     """Run one command; whatever the user did wrong is one line on standard error."""
-    sys.exit(_exit_code(arguments))
+    sys.exit(run_command(arguments))
+
+
+def run_command(arguments: list[str] | None) -> int:
+    """The exit code of one command. SIGTERM and a terminal that closes end it as Ctrl-C does."""
+    prepare()
+    for name in ("SIGTERM", "SIGHUP"):
+        if number := getattr(signal, name, None):
+            signal.signal(number, signal.default_int_handler)
+    return guarded(lambda: _exit_code(arguments))
 
 
 def _exit_code(arguments: list[str] | None) -> int:
     try:
-        code = app(arguments, standalone_mode=False)
+        code = int(app(arguments, standalone_mode=False) or 0)
     except typer.TyperException as error:
         return _say(error.format_message(), error.exit_code)
     except LaglabError as error:
@@ -59,8 +68,8 @@ def _exit_code(arguments: list[str] | None) -> int:
     except SIDE_ERRORS as error:
         return _say(str(error), ScenarioError.exit_code)
     except (typer.Abort, KeyboardInterrupt):
-        return _say("interrupted", 130)
-    return int(code or 0)
+        code = INTERRUPTED
+    return _say("interrupted", code) if code == INTERRUPTED else code
 
 
 def _say(text: str, exit_code: int) -> int:

@@ -8,16 +8,17 @@ from hypothesis import strategies as st
 from laglab_control import (
     DelayedEkf,
     Ekf,
+    LiteralPopf,
     Measured,
     Popf,
     PopfExact,
     Rewinding,
     RigidMotions,
-    RobotModel,
     StampError,
 )
 
-ROBOT = RobotModel()
+from .textbook import ROBOT, ekf_in_order
+
 TICKS = 50
 RANDOM = np.random.default_rng(11)
 INPUTS = RANDOM.normal(size=(TICKS, 2)) * 2
@@ -45,46 +46,6 @@ def run(estimator, arrivals):
     return state
 
 
-def literal_popf(arrivals):
-    """(27), (28) for any arrivals: each z_s its own correction, M* from s to k and through the
-    corrections already made at k."""
-    x, P, used = X_0, P_0, set()
-    priors, factors = [], []
-    for k in range(TICKS + 1):
-        if k:
-            A, W = ROBOT.A(x, INPUTS[k - 1]), ROBOT.W(x)
-            factors[-1] = A @ factors[-1]
-            x, P = ROBOT.f(x, INPUTS[k - 1]), A @ P @ A.T + W @ ROBOT.Q @ W.T
-        priors.append((x, P))
-        factors.append(np.eye(3))
-        for s in sorted(arrivals.get(k, [])):
-            if s in used:
-                continue
-            used.add(s)
-            (x_s, P_s), M = priors[s], np.eye(3)
-            for factor in factors[s:]:
-                M = factor @ M
-            K = M @ P_s @ np.linalg.inv(P_s + ROBOT.R)
-            x = x + K @ ROBOT.innovation(MEASUREMENTS[s], x_s)
-            P = P - K @ P_s @ M.T
-            factors[-1] = (np.eye(3) - K) @ factors[-1]
-    return x, P
-
-
-def in_order(arrivals):
-    """An EKF with everything that arrived, each at its own tick."""
-    x, P = X_0, P_0
-    arrived = {s for batch in arrivals.values() for s in batch}
-    for k in range(TICKS + 1):
-        if k:
-            A, W = ROBOT.A(x, INPUTS[k - 1]), ROBOT.W(x)
-            x, P = ROBOT.f(x, INPUTS[k - 1]), A @ P @ A.T + W @ ROBOT.Q @ W.T
-        if k in arrived:
-            K = P @ np.linalg.inv(P + ROBOT.R)
-            x, P = x + K @ ROBOT.innovation(MEASUREMENTS[k], x), (np.eye(3) - K) @ P
-    return x, P
-
-
 @st.composite
 def links(draw):
     """For each measurement the delays of its copies: none is a loss, two a repeat."""
@@ -98,17 +59,17 @@ def links(draw):
 @settings(max_examples=40, deadline=None)
 @given(links())
 def test_popf_does_what_its_equations_say(arrivals):
-    x, P = literal_popf(arrivals)
-    state = run(Popf(ROBOT), arrivals)
-    scale = 1 + np.abs(P).max()
-    assert np.abs(state.x - x).max() < 1e-9 * scale
-    assert np.abs(state.P - P).max() < 1e-9 * scale
+    fast, literal = (run(popf(ROBOT), arrivals) for popf in (Popf, LiteralPopf))
+    scale = 1 + np.abs(literal.P).max()
+    assert np.abs(fast.x - literal.x).max() < 1e-9 * scale
+    assert np.abs(fast.P - literal.P).max() < 1e-9 * scale
 
 
 @settings(max_examples=40, deadline=None)
 @given(links())
 def test_delayed_ekf_is_the_ekf_that_had_everything_in_order(arrivals):
-    x, P = in_order(arrivals)
+    used = {s: MEASUREMENTS[s] for batch in arrivals.values() for s in batch}
+    x, P = ekf_in_order(X_0, P_0, INPUTS, used)
     state = run(DelayedEkf(ROBOT, RigidMotions(ROBOT)), arrivals)
     assert np.abs(state.x - x).max() < 1e-10
     assert np.abs(state.P - P).max() < 1e-10

@@ -9,6 +9,7 @@ from laglab_control import (
     DelayedEkf,
     Ekf,
     Law,
+    LiteralPopf,
     Measured,
     Popf,
     ReplayedInputs,
@@ -18,7 +19,9 @@ from laglab_control import (
     replay,
 )
 
-robot = RobotModel()
+from . import textbook
+
+robot = textbook.ROBOT
 P0 = np.eye(3) * 1e-3
 
 
@@ -38,61 +41,26 @@ def run(estimator, record, m):
     )
 
 
-def textbook_predict(x, P, u):
-    A, W = robot.A(x, u), robot.W(x)
-    return robot.f(x, u), A @ P @ A.T + W @ robot.Q @ W.T
-
-
-def textbook_correct(x, P, z):
-    K = P @ np.linalg.inv(P + robot.R)
-    return x + K @ robot.innovation(z, x), (np.eye(3) - K) @ P
-
-
-def literal_popf(record, m):
-    """(27), (28) with the product of (21) taken anew at every tick."""
-    x, P = record.poses[0], P0
-    priors, factors, estimates, covariances = [], [], [], []
-    for k, _ in enumerate(record.poses):
-        if k:
-            factors[k - 1] = robot.A(x, record.inputs[k - 1]) @ factors[k - 1]
-            x, P = textbook_predict(x, P, record.inputs[k - 1])
-        priors.append((x, P))
-        K = np.zeros((3, 3))
-        if k >= m:
-            (x_s, P_s), M = priors[k - m], np.eye(3)
-            for i in range(1, m + 1):
-                M = M @ factors[k - i]
-            K = M @ P_s @ np.linalg.inv(P_s + robot.R)
-            x = x + K @ robot.innovation(record.measurements[k - m], x_s)
-            P = P - K @ P_s @ M.T
-            P = (P + P.T) / 2
-        factors.append(np.eye(3) - K)
-        estimates.append(x)
-        covariances.append(P)
-    return np.array(estimates), np.array(covariances)
-
-
 def literal_delayed_ekf(record, m):
     """At every tick, the EKF over everything that has arrived, from tick 0 on."""
-    estimates, covariances = [], []
-    for k, _ in enumerate(record.poses):
-        x, P = record.poses[0], P0
-        for j in range(k + 1):
-            if j:
-                x, P = textbook_predict(x, P, record.inputs[j - 1])
-            if j + m <= k:
-                x, P = textbook_correct(x, P, record.measurements[j])
-        estimates.append(x)
-        covariances.append(P)
-    return np.array(estimates), np.array(covariances)
+    beliefs = [
+        textbook.ekf_in_order(
+            record.poses[0],
+            P0,
+            record.inputs[:k],
+            dict(enumerate(record.measurements[: max(k - m + 1, 0)])),
+        )
+        for k, _ in enumerate(record.poses)
+    ]
+    return map(np.array, zip(*beliefs, strict=True))
 
 
 @pytest.mark.parametrize("m", [0, 1, 7, 20])
 def test_popf_is_its_equations_written_out(record, m):
-    estimates, covariances = literal_popf(record, m)
-    answer = run(Popf(robot), record, m)
-    assert np.abs(answer.estimates - estimates).max() < 1e-12
-    assert np.abs(answer.covariances - covariances).max() < 1e-12
+    fast, literal = (run(popf(robot), record, m) for popf in (Popf, LiteralPopf))
+    assert np.abs(fast.estimates - literal.estimates).max() < 1e-12
+    assert np.abs(fast.covariances - literal.covariances).max() < 1e-12
+    assert np.abs(fast.nis - literal.nis)[m:].max() < 1e-9
 
 
 @pytest.mark.parametrize("m", [0, 1, 20])
@@ -115,9 +83,9 @@ def test_ekf_takes_a_late_measurement_for_a_fresh_one(record):
     late = run(Ekf(robot), record, 5).estimates
     x, P = record.poses[0], P0
     for k, u in enumerate(record.inputs, start=1):
-        x, P = textbook_predict(x, P, u)
+        x, P = textbook.predict(x, P, u)
         if k >= 5:
-            x, P = textbook_correct(x, P, record.measurements[k - 5])
+            x, P = textbook.correct(x, P, record.measurements[k - 5])
         assert np.abs(late[k] - x).max() < 1e-10 or k < 5
 
 
@@ -126,7 +94,7 @@ def test_before_the_first_measurement_it_only_predicts(record, name):
     answer = run(ESTIMATORS[name].make(robot), record, 20)
     x, P = record.poses[0], P0
     for k in range(1, 20):
-        x, P = textbook_predict(x, P, record.inputs[k - 1])
+        x, P = textbook.predict(x, P, record.inputs[k - 1])
         assert np.allclose(answer.estimates[k], x, atol=1e-14)
         assert np.allclose(answer.covariances[k], P, atol=1e-16)
 

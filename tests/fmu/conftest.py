@@ -80,6 +80,19 @@ class Face:
         fmu = self.fmu
         return (fmu.deSerializeFMUstate if self.version == 2 else fmu.deserializeFMUState)(data)
 
+    def packed(self) -> bytes:
+        """All that it is, serialized."""
+        state = self.save()
+        data = self.serialize(state)
+        self.free(state)
+        return data
+
+    def become(self, data: bytes) -> None:
+        """What another was when it was packed."""
+        state = self.deserialize(data)
+        self.restore(state)
+        self.free(state)
+
 
 _CLASSES = {
     (2, "CoSimulation"): FMU2Slave,

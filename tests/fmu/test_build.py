@@ -7,7 +7,14 @@ from pathlib import Path
 import pytest
 from fmpy import read_model_description
 
-from laglab_fmu import BuildError, CompilerNotFoundError, build_fmus, contents
+from laglab_fmu import (
+    BuildError,
+    CompilerNotFoundError,
+    RobotParameters,
+    build_fmus,
+    c_compiler,
+    contents,
+)
 from laglab_fmu import compiler as compiler_module
 
 
@@ -37,6 +44,29 @@ def test_both_versions_tell_the_same_of_every_variable(fmus: dict[str, Path]) ->
         ]
 
     assert table(two) == table(three)
+
+
+@pytest.mark.parametrize("name", ["Robot2", "Robot3"])
+def test_a_robot_left_alone_has_the_default_parameters(fmus: dict[str, Path], name: str) -> None:
+    variables = read_model_description(str(fmus[name])).modelVariables
+    starts = {v.name: v.start for v in variables if v.causality == "parameter"}
+    truth = {"true": 1.0, "false": 0.0}
+    told = {key: truth[start] if start in truth else float(start) for key, start in starts.items()}
+    assert told == RobotParameters().by_name()
+
+
+def test_the_compiler_is_the_one_asked_for_and_ziglang_the_last(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    for name in ("gcc", "other"):
+        (tmp_path / name).touch(mode=0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setenv("CC", "other -m64")
+    assert c_compiler() == ["other", "-m64"]
+    monkeypatch.setenv("CC", " ")
+    assert c_compiler() == ["gcc"]
+    monkeypatch.setenv("PATH", str(tmp_path / "empty"))
+    assert c_compiler()[1:4] == ["-m", "ziglang", "cc"]
 
 
 def test_without_any_compiler_it_says_what_to_install(

@@ -7,20 +7,15 @@ from xml.etree import ElementTree
 
 import pytest
 
-from laglab_fmu import BuildError, Robot, RobotParameters
-from laglab_fmu.compiler import FLAGS, compile_library, fmi_headers, host_platform, zig_compiler
-from laglab_fmu.contents import c_files
+from laglab_fmu import BuildError, Robot, RobotParameters, c_compiler
+from laglab_fmu.compiler import FLAGS, compile_library, host_compiler, host_platform
+from laglab_fmu.contents import c_files, fmi_headers
 from laglab_fmu.description import TOKEN
-from laglab_fmu.host import host_compiler
 from laglab_fmu.variables import MODEL_NAME
 
 HERE = Path(__file__).parent
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"]
 TICKS = 300
-
-
-def compiler() -> list[str]:
-    return host_compiler() or zig_compiler(host_platform())
 
 
 @pytest.fixture(scope="session")
@@ -33,7 +28,7 @@ def sources(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def compile_program(sources: Path, program: Path, main: str, *arguments: str) -> None:
-    command = [*compiler(), "-std=c99", *WARNINGS, "-ffp-contract=off", "-I", str(sources)]
+    command = [*c_compiler(), "-std=c99", *WARNINGS, "-ffp-contract=off", "-I", str(sources)]
     command += ["-isystem", str(fmi_headers()), str(HERE / main), "-o", str(program), *arguments]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
@@ -119,7 +114,7 @@ def test_a_third_party_compiles_what_is_inside(
         assert [library.get("name") for library in build.findall(".//Library")] == ["m"]
     assert sorted(path.name for path in folder.glob("*.c")) == listed
     library = tmp_path / f"{MODEL_NAME}{host_platform().suffix}"
-    command = [*compiler(), "-std=c99", "-shared", "-fPIC", "-o", str(library)]
+    command = [*c_compiler(), "-std=c99", "-shared", "-fPIC", "-o", str(library)]
     subprocess.run([*command, *map(str, listed), "-lm"], check=True, cwd=folder)
     assert TOKEN.encode() in library.read_bytes()
 
@@ -128,4 +123,4 @@ def test_warnings_do_fail_a_build(tmp_path: Path) -> None:
     source = tmp_path / "unused.c"
     source.write_text("static int unused(void) { return 0; }\n")
     with pytest.raises(BuildError, match="unused"):
-        compile_library(tmp_path, [source.name], "unused.so", compiler())
+        compile_library(tmp_path, [source.name], "unused.so", c_compiler())

@@ -9,10 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from laglab_fmu import Reading, Robot, RobotParameters
-from laglab_fmu.compiler import FLAGS, host_platform, zig_compiler
+from laglab_fmu import Reading, Robot, RobotParameters, c_compiler
+from laglab_fmu.compiler import FLAGS, host_platform
 from laglab_fmu.contents import own_files
-from laglab_fmu.host import host_compiler
 
 WORD = st.integers(0, 2**64 - 1)
 SAMPLES = 20_000
@@ -21,11 +20,9 @@ SAMPLES = 20_000
 @pytest.fixture(scope="session")
 def noise(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
     """noise.c alone, as a library."""
-    platform = host_platform()
-    library = tmp_path_factory.mktemp("noise") / f"noise{platform.suffix}"
+    library = tmp_path_factory.mktemp("noise") / f"noise{host_platform().suffix}"
     source = own_files("src") / "noise.c"
-    compiler = host_compiler() or zig_compiler(platform)
-    command = [*compiler, *FLAGS, "-fvisibility=default", "-shared", "-fPIC"]
+    command = [*c_compiler(), *FLAGS, "-fvisibility=default", "-shared", "-fPIC"]
     subprocess.run([*command, "-o", str(library), str(source), "-lm"], check=True)
     loaded = ctypes.CDLL(str(library))
     for name in ("noise_log", "noise_quantile"):

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from laglab_fmu import BuildError, build_fmus
-from laglab_fmu.compiler import FLAGS, PLATFORMS, fmi_headers, host_platform, zig_compiler
-from laglab_fmu.contents import c_files
+from laglab_fmu.compiler import FLAGS, PLATFORMS, host_platform, zig_compiler
+from laglab_fmu.contents import c_files, fmi_headers
 
 BY_FOLDER = {platform.fmi3_folder: platform for platform in PLATFORMS}
 WINDOWS = BY_FOLDER["x86_64-windows"]

@@ -43,12 +43,7 @@ def test_a_serialized_state_goes_on_in_another_instance(
     face, other = make_face(name, "CoSimulation"), make_face(name, "CoSimulation")
     face.start(seed=9, x_start=-3.0)
     drive(face, 0, 30)
-    state = face.save()
-    data = face.serialize(state)
-    face.free(state)
-    received = other.deserialize(data)
-    other.restore(received)
-    other.free(received)
+    other.become(face.packed())
     assert drive(other, 30, 20) == drive(face, 30, 20)
 
 
@@ -58,9 +53,7 @@ def test_the_serialized_state_is_the_same_in_both_versions(make_face: Callable[.
         face = make_face(name, "CoSimulation")
         face.start(seed=4)
         drive(face, 0, 5)
-        state = face.save()
-        serialized.append(face.serialize(state))
-        face.free(state)
+        serialized.append(face.packed())
     assert serialized[0] == serialized[1]
 
 
@@ -81,12 +74,7 @@ def test_time_comes_back_in_model_exchange(make_face: Callable[..., Any], name: 
     face, other = make_face(name, "ModelExchange"), make_face(name, "ModelExchange")
     face.start(time=5.0, seed=8)
     other.start(time=1.0)
-    state = face.save()
-    data = face.serialize(state)
-    face.free(state)
-    received = other.deserialize(data)
-    other.restore(received)
-    other.free(received)
+    other.become(face.packed())
     fmu = other.fmu
     *_, next_time = fmu.newDiscreteStates() if name == "Robot2" else fmu.updateDiscreteStates()
     assert next_time == pytest.approx(5.01)

@@ -6,11 +6,9 @@ The whole robot's side with its station inside, disarmed, watched at URL; until 
 import sys
 import time
 
-import numpy as np
-
 from laglab.runs.inline import InlineLink
 from laglab.runs.plant import FmuPlant
-from laglab_control import Law, RobotModel, StationConfig
+from laglab_control import Law, StationConfig
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
     Gateway,
@@ -32,24 +30,8 @@ FOREVER = 10**9
 
 
 def station() -> Station:
-    model = RobotModel(
-        sample_time=PARAMETERS.sample_time,
-        wheel_radius=PARAMETERS.wheel_radius,
-        track=PARAMETERS.track,
-        Q=0.01 * np.eye(2),
-        R=np.diag(PARAMETERS.measurement_variance),
-    )
-    law = Law(goal=(0.0, 0.0, 0.0), v_max=1.0, omega_max=1.7, goal_tolerance=0.03)
-    return Station(
-        StationConfig(
-            estimator="raw",
-            model=model,
-            law=law,
-            initial_estimate=np.array(START),
-            initial_covariance=1e-4 * np.eye(3),
-            command_delay=0,
-        )
-    )
+    law = Law(v_max=1.0, omega_max=1.7, goal_tolerance=0.03)
+    return Station(StationConfig(estimator="raw", law=law, initial_estimate=START))
 
 
 def _breathe(_: int) -> None:

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import laglab
 from laglab_gateway import Safety
 from laglab_gateway.services import (
     Parameter,
@@ -16,7 +17,7 @@ from laglab_gateway.services import (
     Timesyncing,
     standard_parameters,
 )
-from laglab_gateway.services.telemetry import REPORTS, to_ned
+from laglab_gateway.services.telemetry import REPORTS, packed_version, to_ned
 from laglab_protocol import (
     AutopilotVersion,
     Command,
@@ -240,6 +241,25 @@ def test_the_version_is_told_by_the_old_command_too(services: Services) -> None:
 
     assert isinstance(version, AutopilotVersion)
     assert version.capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
+    assert version.flight_sw_version == packed_version(laglab.__version__)
+
+
+@pytest.mark.parametrize(
+    ("text", "packed"),
+    [
+        ("0.1.0", 0x000100FF),
+        ("1.2.3", 0x010203FF),
+        ("1.2.3.post1", 0x010203FF),
+        ("2.0", 0x020000FF),
+        ("1.2.3a1", 0x01020340),
+        ("1.2.3b1", 0x01020380),
+        ("1.2rc1", 0x010200C0),
+        ("1.2.3.dev4", 0x01020300),
+        ("2024.1.0", 0xFF0100FF),
+    ],
+)
+def test_versions_are_packed_as_the_message_has_them(text: str, packed: int) -> None:
+    assert packed_version(text) == packed
 
 
 # Ping and time

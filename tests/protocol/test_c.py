@@ -1,15 +1,14 @@
 """The golden table in C: mavgen's headers, compiled here, make and read the very same bytes."""
 
 import math
-import shutil
 import subprocess
-import sys
 from pathlib import Path
 from string import Template
 
 import pytest
 from msgspec.structs import astuple
 
+from laglab_fmu import c_compiler
 from laglab_protocol.dialect.generated import laglab as dialect
 from laglab_protocol.dialect.mavgen import dialect_path, generate
 from laglab_protocol.messages.layout import layout_of
@@ -123,12 +122,10 @@ def printed(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
 
 
 def compiled(source: Path, folder: Path) -> Path:
-    compiler = shutil.which("cc")
-    command = [compiler] if compiler else [sys.executable, "-m", "ziglang", "cc"]
     strict = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsanitize=undefined"]
     program = folder / "golden"
     subprocess.run(
-        [*command, *strict, "-isystem", folder / "include", source, "-lm", "-o", program],
+        [*c_compiler(), *strict, "-isystem", folder / "include", source, "-lm", "-o", program],
         check=True,
         timeout=50,
     )

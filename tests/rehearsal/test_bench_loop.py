@@ -1,24 +1,25 @@
 """The loops that the benchmark compares do the same work."""
 
-import re
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
+import msgspec
 import numpy as np
 import pytest
 
 import laglab
-from laglab.bench import by_hand
-from laglab.bench.loop import TRANSPORTS, loop_scenario
-from laglab.bench.round_trip import seconds_per_echo, tick_sizes
+from laglab.bench import Report, by_hand
+from laglab.bench.loop import LINKS
+from laglab.bench.round_trip import Link, seconds_per_echo, tick_sizes
+from laglab.bench.whole_run import loop_scenario
 from laglab_gateway import read_trace
 
 
-@pytest.mark.parametrize("transport", TRANSPORTS)
-def test_the_loop_by_hand_leaves_our_trace(tmp_path: Path, transport: str) -> None:
+@pytest.mark.parametrize("link", LINKS)
+def test_the_loop_by_hand_leaves_our_trace(tmp_path: Path, link: Link) -> None:
     scenario = loop_scenario("popf", ticks=60)
-    assert 0 < by_hand.seconds_per_tick(transport, scenario, tmp_path) < 1
+    assert 0 < by_hand.seconds_per_tick(link, scenario, tmp_path) < 1
     theirs = read_trace(tmp_path / "trace.csv")
     laglab.run(scenario, out=tmp_path / "ours")
     ours = read_trace(tmp_path / "ours" / "trace.csv")
@@ -27,10 +28,10 @@ def test_the_loop_by_hand_leaves_our_trace(tmp_path: Path, transport: str) -> No
     assert np.abs(ours["v"]).max() > 0
 
 
-@pytest.mark.parametrize("transport", TRANSPORTS)
-def test_the_echo_carries_as_many_bytes_as_a_tick(tmp_path: Path, transport: str) -> None:
+@pytest.mark.parametrize("link", LINKS)
+def test_the_echo_carries_as_many_bytes_as_a_tick(tmp_path: Path, link: Link) -> None:
     sizes = tick_sizes(estimates=True)
-    assert 0 < seconds_per_echo(transport, sizes, ticks=50) < 0.1
+    assert 0 < seconds_per_echo(link, sizes, ticks=50) < 0.1
     laglab.run(loop_scenario("popf", ticks=60), out=tmp_path)
     frames = (tmp_path / "robot.tlog").stat().st_size / 61
     assert sizes.to_station + sizes.to_robot + 4 * 8 == pytest.approx(frames, rel=0.3)
@@ -38,17 +39,21 @@ def test_the_echo_carries_as_many_bytes_as_a_tick(tmp_path: Path, transport: str
 
 @pytest.mark.slow
 def test_the_benchmark_says_what_each_way_costs(
-    laglab: Callable[..., subprocess.CompletedProcess[str]],
+    tmp_path: Path, laglab: Callable[..., subprocess.CompletedProcess[str]]
 ) -> None:
-    result = laglab(
-        "bench", "loop", "--rounds", "1", "--ticks", "100", "--realtime", "1", "--link", "udp"
-    )
+    short = ("--rounds", "1", "--ticks", "100", "--realtime", "1", "--link", "udp")
+    result = laglab("bench", "loop", *short, "--json", "loop.json")
     assert result.returncode == 0, result.stderr
-    rows = re.findall(
-        r"(udp|serial) +(popf|raw)((?: +[\d.]+ \([\d]+\)){3}(?: +[\d.]+){3})", result.stdout
-    )
-    assert [row[:2] for row in rows] == [("udp", "popf"), ("udp", "raw")]
-    assert all(
-        float(number) > 0 for *_, numbers in rows for number in re.findall(r"[\d.]+", numbers)
-    )
-    assert "real time, late by: p50" in result.stdout
+    report = msgspec.json.decode((tmp_path / "loop.json").read_bytes(), type=Report)
+    timings = {(each.case, each.name): each for each in report.results[0].timings}
+    assert list(timings) == [
+        (case, way)
+        for case in ("udp, popf", "udp, raw")
+        for way in ("bare echo", "by hand", "laglab")
+    ]
+    figures = {(each.name, each.unit): each.value for each in report.figures}
+    ours = timings["udp, popf", "laglab"]
+    assert figures["udp, popf: laglab", "× real time"] == pytest.approx(1e4 / ours.fastest)
+    assert figures["real time, late by: p50", "ms"] > 0
+    assert "udp, popf: laglab" in result.stdout
+    assert max(map(len, result.stdout.splitlines())) <= 80

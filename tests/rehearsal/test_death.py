@@ -119,8 +119,16 @@ def said_in_time(process: "subprocess.Popen[str]", words: str) -> str:
     return said + process.communicate(timeout=20)[1]
 
 
-def test_a_dead_controller_is_noticed_by_the_gateway(
-    start: Start, listening_port: ListeningPort, tmp_path: Path
+@pytest.mark.parametrize(
+    ("victim", "said"),
+    [
+        ("controller", r"laglab: the controller has been silent since tick \d+"),
+        ("gateway", r"laglab: .*silent .*since its tick \d+"),
+    ],
+    ids=["controller", "gateway"],
+)
+def test_the_other_side_notices_a_dead_one(
+    start: Start, listening_port: ListeningPort, tmp_path: Path, victim: str, said: str
 ) -> None:
     options = ("fig6", "--duration", "3600")
     gateway = start("gateway", *options, "--endpoint", "udpin://127.0.0.1:0", "--out", "run")
@@ -128,25 +136,10 @@ def test_a_dead_controller_is_noticed_by_the_gateway(
         "controller", *options, "--endpoint", f"udpout://127.0.0.1:{listening_port(gateway)}"
     )
     wait_for_rows(tmp_path / "run" / "trace.csv", 50)
-    station.kill()
-    errors = said_in_time(gateway, r"laglab: the controller has been silent since tick \d+")
-    assert gateway.returncode == 4
-    assert "Traceback" not in errors
-    assert_whole(tmp_path / "run" / "trace.csv")
-
-
-def test_a_dead_gateway_is_noticed_by_the_controller(
-    start: Start, listening_port: ListeningPort, tmp_path: Path
-) -> None:
-    options = ("fig6", "--duration", "3600")
-    gateway = start("gateway", *options, "--endpoint", "udpin://127.0.0.1:0", "--out", "run")
-    station = start(
-        "controller", *options, "--endpoint", f"udpout://127.0.0.1:{listening_port(gateway)}"
-    )
-    wait_for_rows(tmp_path / "run" / "trace.csv", 50)
-    gateway.kill()
-    errors = said_in_time(station, r"laglab: .*silent .*since its tick \d+")
-    assert station.returncode == 4
+    dies, stays = (station, gateway) if victim == "controller" else (gateway, station)
+    dies.kill()
+    errors = said_in_time(stays, said)
+    assert stays.returncode == 4
     assert "Traceback" not in errors
     assert_whole(tmp_path / "run" / "trace.csv")
 

@@ -7,6 +7,7 @@ from laglab_control.estimators.interface import Applied, Estimator, Measured, St
 from laglab_control.estimators.kalman import Innovation
 from laglab_control.estimators.popf import Popf
 from laglab_control.estimators.popf_exact import PopfExact
+from laglab_control.estimators.popf_literal import LiteralPopf
 from laglab_control.estimators.rewinding import Rewinding
 from laglab_control.estimators.windows import ReplayedInputs, RigidMotions
 
@@ -18,6 +19,7 @@ __all__ = [
     "Estimator",
     "EstimatorKind",
     "Innovation",
+    "LiteralPopf",
     "Measured",
     "Popf",
     "PopfExact",

@@ -1,5 +1,6 @@
 """One gateway's talk with its station over one endpoint: what every pace has in common."""
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 
@@ -7,6 +8,7 @@ from laglab_gateway.errors import StationSilentError
 from laglab_gateway.loops.surroundings import Surroundings
 from laglab_gateway.loops.watch import Watch
 from laglab_gateway.record.recorder import Recorder
+from laglab_gateway.services import heartbeat
 from laglab_gateway.side import RobotSide, from_station
 from laglab_protocol import (
     EndpointError,
@@ -26,6 +28,9 @@ END_TRIES = 5
 
 LARGEST_DATAGRAM = 1200
 """[bytes] Every path carries so many in one piece, and no answer is worth more than a piece."""
+
+KNOCK_PERIOD = 0.5
+"""[s]"""
 
 PATIENT_WITH_KEYS = 1.0
 """[s] After so long without a frame that we may take, we say how many we may not."""
@@ -47,6 +52,7 @@ class Conversation:
         self._settings: Settings | None = None
         self._told: set[str] = set()
         self._begun = False
+        self._knocked = -math.inf
 
     @contextmanager
     def run(self) -> Iterator[None]:
@@ -69,6 +75,7 @@ class Conversation:
         """
         started = self.now()
         while not self._gateway.connected:
+            self._knock()
             self.listen(self._patience.repeat_after)
             self._recorder.flush()
             waited = self.now() - started
@@ -79,6 +86,14 @@ class Conversation:
         self._begun = True
         if self._settings is None:
             self._warn("the controller does not tell its settings: nothing to compare with ours")
+
+    def _knock(self) -> None:
+        """A station that waits at an address of its own does not know ours before we speak."""
+        if self.now() - self._knocked >= KNOCK_PERIOD:
+            self._knocked = self.now()
+            self._link.send(
+                b"".join(self._gateway.framed([heartbeat(self._gateway.services.arming)]))
+            )
 
     def send(self, frames: Sequence[bytes]) -> None:
         """Send whole frames as one datagram."""

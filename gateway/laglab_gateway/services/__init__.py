@@ -4,6 +4,7 @@ from laglab_gateway.services.commands import Commands
 from laglab_gateway.services.parameters import Parameter, Parameters, standard_parameters
 from laglab_gateway.services.service import Services
 from laglab_gateway.services.state import Arming, RobotState
+from laglab_gateway.services.telemetry import heartbeat
 from laglab_gateway.services.timesync import Timesyncing
 
 __all__ = [
@@ -14,5 +15,6 @@ __all__ = [
     "RobotState",
     "Services",
     "Timesyncing",
+    "heartbeat",
     "standard_parameters",
 ]

@@ -6,7 +6,10 @@ north = y, east = x, yaw = pi/2 - theta, yaw rate = -omega.
 """
 
 import math
+import re
 from collections.abc import Callable
+from functools import cache
+from importlib.metadata import version
 from typing import NamedTuple
 
 from laglab_gateway.services.state import Arming, RobotState
@@ -23,8 +26,14 @@ from laglab_protocol import (
 from laglab_protocol.dialect.generated import laglab as mavlink
 
 MAVLINK_VERSION = 3
-VERSION = 0 << 24 | 1 << 16 | 0 << 8 | 255
-"""0.1.0, an official release, as AUTOPILOT_VERSION packs it."""
+MATURITY: dict[str | None, int] = {
+    ".dev": mavlink.FIRMWARE_VERSION_TYPE_DEV,
+    "a": mavlink.FIRMWARE_VERSION_TYPE_ALPHA,
+    "b": mavlink.FIRMWARE_VERSION_TYPE_BETA,
+    "rc": mavlink.FIRMWARE_VERSION_TYPE_RC,
+    None: mavlink.FIRMWARE_VERSION_TYPE_OFFICIAL,
+}
+"""What a version's suffix (PEP 440) says of it."""
 CAPABILITIES: int = (
     mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
     | mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST
@@ -131,10 +140,24 @@ def odometry(state: RobotState) -> Odometry:
     )
 
 
+@cache
 def autopilot_version() -> AutopilotVersion:
     """Which version of what this is."""
-    nothing = (0,) * 8
-    return AutopilotVersion(CAPABILITIES, 0, VERSION, 0, 0, 0, 0, 0, nothing, nothing, nothing)
+    ours, nothing = packed_version(version("laglab")), (0,) * 8
+    return AutopilotVersion(CAPABILITIES, 0, ours, 0, 0, 0, 0, 0, nothing, nothing, nothing)
+
+
+def packed_version(text: str) -> int:
+    """`1.2.3rc4` as AUTOPILOT_VERSION has it: major, minor, patch and maturity, a byte each.
+
+    Raises ValueError for what is not a version.
+    """
+    found = re.match(r"(\d+)(?:\.(\d+))?(?:\.(\d+))?(a|b|rc|\.dev)?", text)
+    if found is None:
+        raise ValueError(f"{text!r} is not a version such as 1.2.3")
+    *numbers, suffix = found.groups()
+    major, minor, patch = (min(int(number or 0), 255) for number in numbers)
+    return major << 24 | minor << 16 | patch << 8 | MATURITY[suffix]
 
 
 def _milliseconds(state: RobotState) -> int:

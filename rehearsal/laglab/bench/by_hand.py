@@ -21,14 +21,14 @@ import fmpy
 import numpy as np
 from fmpy.fmi2 import FMU2Slave
 
+from laglab.bench.round_trip import Link
+from laglab.bench.whole_run import Loop, loop_of
 from laglab.errors import RunError
 from laglab.runs.child import Inbox, Tell, started
 from laglab.runs.reports import Listening, Order, Progress
-from laglab.runs.robot_side import robot_parameters
-from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario
 from laglab_control import Controller, Echo, Measured
-from laglab_fmu import fmu_path
+from laglab_fmu import RobotParameters, fmu_path
 from laglab_gateway import TRACE_FILE, TraceRow
 from laglab_protocol import STATION_COMPONENT, STATION_SYSTEM
 from laglab_protocol.dialect.mavgen import offer_to_pymavlink
@@ -37,30 +37,30 @@ OUTPUTS = ("x", "y", "theta", "x_meas", "y_meas", "theta_meas")
 INPUTS = ("omega_left", "omega_right")
 
 
-def seconds_per_tick(transport: str, scenario: Scenario, directory: Path) -> float:
-    """Wall time [s] of one tick, over the scenario's whole run; fills `directory`."""
+def seconds_per_tick(over: Link, scenario: Scenario, directory: Path) -> float:
+    """Wall time [s] of one tick, over the whole run; fills `directory`."""
     told = scenario.to_toml()
     inbox: Inbox = Queue()
-    order = Order(told, transport, str(directory))
+    order = Order(told, over, str(directory))
     with started("robot", "laglab.bench.by_hand:robot_process", order, inbox):
         first = inbox.get().report
         if not isinstance(first, Listening):
-            raise RunError(f"the loop by hand over {transport} did not start: {first}")
+            raise RunError(f"the loop by hand over {over} did not start: {first}")
         order = Order(told, first.address)
         with started("station", "laglab.bench.by_hand:station_process", order, inbox):
             last = inbox.get().report
             if not isinstance(last, Progress):
-                raise RunError(f"the loop by hand over {transport} ended early: {last}")
+                raise RunError(f"the loop by hand over {over} ended early: {last}")
             return last.loop_seconds / last.tick
 
 
 def robot_process(order: Order, tell: Tell) -> None:
     """Listens, drives to the last tick, and reports how long that took."""
     mavutil = _mavutil()
-    scenario, directory = Scenario.from_toml(order.scenario), Path(order.directory)
+    loop, directory = loop_of(Scenario.from_toml(order.scenario)), Path(order.directory)
     with (
         _robot_link(mavutil, order.url) as (link, address),
-        _fmu(scenario, directory / "fmu") as (fmu, references),
+        _fmu(loop.robot, directory / "fmu") as (fmu, references),
         (directory / TRACE_FILE).open("w", newline="") as file,
     ):
         trace = csv.writer(file)
@@ -68,19 +68,17 @@ def robot_process(order: Order, tell: Tell) -> None:
         tell(Listening(address))
         link.recv_match(type="HEARTBEAT", blocking=True)
         began = perf_counter()
-        _drive(scenario, link, fmu, references, trace)
-        tell(Progress(int(scenario.last_tick), perf_counter() - began))
+        _drive(loop, link, fmu, references, trace)
+        tell(Progress(int(loop.last_tick), perf_counter() - began))
 
 
-def _drive(
-    scenario: Scenario, link: Any, fmu: FMU2Slave, references: dict[str, int], trace: Any
-) -> None:
-    n, m, Ts = scenario.command_delay, scenario.measurement_delay, scenario.sample_time
+def _drive(loop: Loop, link: Any, fmu: FMU2Slave, references: dict[str, int], trace: Any) -> None:
+    n, m, Ts = loop.command_delay, loop.measurement_delay, loop.robot.sample_time
     outputs, inputs = [references[name] for name in OUTPUTS], [references[name] for name in INPUTS]
     commands: deque[tuple[float, float]] = deque([(0.0, 0.0)] * n)
     measurements: deque[tuple[float, ...]] = deque()
     v = omega = 0.0
-    for k in range(scenario.last_tick + 1):
+    for k in range(loop.last_tick + 1):
         pose = fmu.getReal(outputs)
         measurements.append((*pose[3:], v, omega, k, max(k - 1 - n, -1)))
         due = [measurements.popleft()] if k >= m else []
@@ -98,18 +96,15 @@ def _drive(
         v, omega = commands.popleft()
         seen = (estimate.x, estimate.y, estimate.theta) if estimate else ("", "", "")
         trace.writerow([k, k * Ts, *pose, *seen, command.v, command.omega, v, omega])
-        half_turn = omega * scenario.track / 2
-        fmu.setReal(
-            inputs,
-            [(v - half_turn) / scenario.wheel_radius, (v + half_turn) / scenario.wheel_radius],
-        )
+        half_turn, radius = omega * loop.robot.track / 2, loop.robot.wheel_radius
+        fmu.setReal(inputs, [(v - half_turn) / radius, (v + half_turn) / radius])
         fmu.doStep(currentCommunicationPoint=k * Ts, communicationStepSize=Ts)
 
 
 def station_process(order: Order, _: Tell) -> None:
     """Answers every tick up to the last."""
     mavutil = _mavutil()
-    scenario = Scenario.from_toml(order.scenario)
+    loop = loop_of(Scenario.from_toml(order.scenario))
     link = mavutil.mavlink_connection(
         order.url,
         baud=57600,
@@ -118,12 +113,12 @@ def station_process(order: Order, _: Tell) -> None:
         dialect="laglab",
     )
     link.mav.heartbeat_send(6, 8, 0, 0, 4)
-    controller = Controller(station_config(scenario))
+    controller = Controller(loop.station)
     control = controller.start()
     arrived: list[Measured] = []
     echoes: list[Echo] = []
     tick = -1
-    while tick < scenario.last_tick:
+    while tick < loop.last_tick:
         message = link.recv_match(type=["LAGLAB_MEASUREMENT", "LAGLAB_TICK"], blocking=True)
         if message.get_type() == "LAGLAB_MEASUREMENT":
             z = np.array([message.x, message.y, message.theta])
@@ -152,9 +147,9 @@ def _mavutil() -> Any:
 
 
 @contextmanager
-def _robot_link(mavutil: Any, transport: str) -> Iterator[tuple[Any, str]]:
+def _robot_link(mavutil: Any, over: str) -> Iterator[tuple[Any, str]]:
     """The robot's connection, and the address that the station opens."""
-    if transport == "udp":
+    if over == "udp":
         link = mavutil.mavlink_connection("udpin:127.0.0.1:0", dialect="laglab", source_system=1)
         host, port = link.port.getsockname()
         yield link, f"udpout:{host}:{port}"
@@ -182,7 +177,7 @@ def _master_port(mavutil: Any, descriptor: int) -> Any:
 
 
 @contextmanager
-def _fmu(scenario: Scenario, folder: Path) -> Iterator[tuple[FMU2Slave, dict[str, int]]]:
+def _fmu(robot: RobotParameters, folder: Path) -> Iterator[tuple[FMU2Slave, dict[str, int]]]:
     """The robot as FMPy's users start it, and its value references by name."""
     description = fmpy.read_model_description(str(fmu_path(2)))
     references = {each.name: each.valueReference for each in description.modelVariables}
@@ -192,7 +187,7 @@ def _fmu(scenario: Scenario, folder: Path) -> Iterator[tuple[FMU2Slave, dict[str
         unzipDirectory=fmpy.extract(str(fmu_path(2)), str(folder)),
     )
     fmu.instantiate()
-    numbers = robot_parameters(scenario).by_name()
+    numbers = robot.by_name()
     for kind in ("Real", "Integer", "Boolean"):
         named = [each for each in description.modelVariables if each.name in numbers]
         names = [each.name for each in named if each.type == kind]

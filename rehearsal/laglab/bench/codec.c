@@ -1,81 +1,53 @@
-/* How fast mavgen's C is on the frames that bench.py sends: prints encode, decode, both signed [us]. */
-#include <stdio.h>
+/* mavgen's C on the frames that codec.py sends: a block of messages a call, unsigned or signed. */
 #include <string.h>
-#include <time.h>
 #include <laglab/mavlink.h>
 
-enum { BLOCK = 2000, ROUNDS = 200, LONGEST = 80 };
+#include "export.h"
 
-static uint8_t frames[BLOCK][LONGEST];
-static uint16_t sizes[BLOCK];
-static mavlink_signing_t sender, receiver;
+enum { MOST = 4096, LONGEST = 80 };
+enum { SENDER = MAVLINK_COMM_0, RECEIVER = MAVLINK_COMM_1, SIGNING_SENDER = MAVLINK_COMM_2, VERIFIER = MAVLINK_COMM_3 };
+
+static uint8_t frames[2][MOST][LONGEST];
+static uint16_t sizes[2][MOST];
+static mavlink_signing_t sender, verifier;
 static mavlink_signing_streams_t streams;
 
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static void use_key(void)
-{
-    for (uint8_t i = 0; i < 32; i++)
-        sender.secret_key[i] = receiver.secret_key[i] = i;
+EXPORT void use_key(const uint8_t key[32]) {
+    memcpy(sender.secret_key, key, 32);
+    memcpy(verifier.secret_key, key, 32);
     sender.flags = MAVLINK_SIGNING_FLAG_SIGN_OUTGOING;
     sender.timestamp = 1;
-    mavlink_get_channel_status(MAVLINK_COMM_0)->signing = &sender;
-    mavlink_get_channel_status(MAVLINK_COMM_1)->signing = &receiver;
-    mavlink_get_channel_status(MAVLINK_COMM_1)->signing_streams = &streams;
+    mavlink_get_channel_status(SIGNING_SENDER)->signing = &sender;
+    mavlink_get_channel_status(VERIFIER)->signing = &verifier;
+    mavlink_get_channel_status(VERIFIER)->signing_streams = &streams;
 }
 
-static double encode(void)
-{
+/* Makes `count` frames, MOST at most, and keeps them. */
+EXPORT void encode(int count, int with_key) {
     mavlink_message_t message;
-    const double started = now();
-    for (int i = 0; i < BLOCK; i++) {
-        mavlink_msg_laglab_measurement_pack(
-            1, 1, &message, 1.5, -2.0, 3.125, 0.5, -1.7, 1234567, 1234537);
-        sizes[i] = mavlink_msg_to_send_buffer(frames[i], &message);
+    const uint8_t channel = with_key ? SIGNING_SENDER : SENDER;
+    for (int i = 0; i < count; i++) {
+        mavlink_msg_laglab_measurement_pack_chan(1, 1, channel, &message, 1.5, -2.0, 3.125, 0.5, -1.7, 1234567, 1234537);
+        sizes[with_key][i] = mavlink_msg_to_send_buffer(frames[with_key][i], &message);
     }
-    return (now() - started) / BLOCK;
 }
 
-/* A negative time says that not every frame was delivered. */
-static double decode(void)
-{
+/* Reads the frames that were made last; returns how many were delivered whole. */
+EXPORT int decode(int count, int with_key) {
     mavlink_message_t message;
     mavlink_status_t status;
     mavlink_laglab_measurement_t fields;
-    double sum = 0;
+    const uint8_t channel = with_key ? VERIFIER : RECEIVER;
+    int delivered = 0;
     memset(&streams, 0, sizeof streams);
-    receiver.timestamp = 0;
-    const double started = now();
-    for (int i = 0; i < BLOCK; i++)
-        for (uint16_t j = 0; j < sizes[i]; j++)
-            if (mavlink_parse_char(MAVLINK_COMM_1, frames[i][j], &message, &status)) {
+    verifier.timestamp = 0;
+    for (int i = 0; i < count; i++) {
+        for (uint16_t j = 0; j < sizes[with_key][i]; j++) {
+            if (mavlink_parse_char(channel, frames[with_key][i][j], &message, &status)) {
                 mavlink_msg_laglab_measurement_decode(&message, &fields);
-                sum += fields.x;
+                delivered += fields.x == 1.5;
             }
-    const double taken = (now() - started) / BLOCK;
-    return sum == 1.5 * BLOCK ? taken : -1;
-}
-
-static void measure(void)
-{
-    double encoding = 1, decoding = 1;
-    for (int round = 0; round < ROUNDS; round++) {
-        const double made = encode(), read = decode();
-        encoding = made < encoding ? made : encoding;
-        decoding = read < decoding ? read : decoding;
+        }
     }
-    printf("%g\n%g\n", 1e6 * encoding, 1e6 * decoding);
-}
-
-int main(void)
-{
-    measure();
-    use_key();
-    measure();
-    return 0;
+    return delivered;
 }

@@ -1,19 +1,11 @@
-"""How fast the codec is, beside pymavlink's and mavgen's C on the same messages, in one run.
+"""How fast the codec is, beside pymavlink's and mavgen's C on the same messages."""
 
-The three take turns in short blocks, and of each the fastest block counts: what else the machine
-does falls on all alike and drops out of the ratios.
-"""
-
-import itertools
-import shutil
-import subprocess
-import sys
-import tempfile
-import time
+import ctypes
 from collections.abc import Callable
-from pathlib import Path
-from typing import NamedTuple
+from contextlib import ExitStack
 
+from laglab.bench.c_library import c_library, new_folder
+from laglab.bench.harness import Bench, Contest, Turn, microseconds, timed
 from laglab_protocol.dialect.generated import laglab as pymavlink
 from laglab_protocol.dialect.mavgen import dialect_path, generate
 from laglab_protocol.framing.receiver import Receiver
@@ -24,64 +16,48 @@ from laglab_protocol.signing.signature import Signer, Verifier
 FIELDS = (1.5, -2.0, 3.125, 0.5, -1.7, 1_234_567, 1_234_537)
 """Of a LAGLAB_MEASUREMENT: a frame of 60 bytes."""
 BLOCK = 500
-C_PROGRAM = Path(__file__).with_suffix(".c")
-C_FLAGS = (
-    "-std=c99",
-    "-D_POSIX_C_SOURCE=199309L",
-    "-O2",
-    "-Wall",
-    "-Wextra",
-    "-Wpedantic",
-    "-Werror",
-)
 KEY = bytes(range(32))
+NAMES = ("ours", "pymavlink", "mavgen's C")
 
 
-class Row(NamedTuple):
-    """Microseconds a message."""
+def bench(stack: ExitStack) -> Bench:
+    """Encode from fields to bytes, decode from bytes to fields, unsigned and signed.
 
-    what: str
-    ours_us: float
-    pymavlink_us: float
-    c_us: float
-
-    @property
-    def times_faster(self) -> float:
-        """Than pymavlink."""
-        return self.pymavlink_us / self.ours_us
-
-    def __str__(self) -> str:
-        return (
-            f"{self.what:16} ours {self.ours_us:5.2f} us   pymavlink {self.pymavlink_us:5.2f} us   "
-            f"{self.times_faster:4.1f} times faster   C {self.c_us:5.2f} us"
-        )
-
-
-def bench_codec(rounds: int = 100) -> list[Row]:
-    """Encode from fields to bytes, decode from bytes to fields, unsigned and signed."""
-    c = _bench_c()
-    return [
-        _row("encode", rounds, _encode_ours(None), _encode_theirs(signed=False), c[0]),
-        _row("decode", rounds, _decode_ours(None), _decode_theirs(signed=False), c[1]),
-        _row("encode signed", rounds, _encode_ours(KEY), _encode_theirs(signed=True), c[2]),
-        _row("decode signed", rounds, _decode_ours(KEY), _decode_theirs(signed=True), c[3]),
-    ]
+    Raises:
+        BuildError: the C does not compile, or there is no compiler.
+    """
+    c = _compiled(stack)
+    cases = {
+        "encode": _encoders(c, signed=False),
+        "decode": _decoders(c, signed=False),
+        "encode signed": _encoders(c, signed=True),
+        "decode signed": _decoders(c, signed=True),
+    }
+    return Bench("codec", [Contest("one message", microseconds("message"), NAMES[0], cases)])
 
 
 Block = Callable[[], None]
+"""Encodes or decodes BLOCK messages."""
 
 
-def _row(what: str, rounds: int, ours: Block, theirs: Block, c_us: float) -> Row:
-    best = {ours: float("inf"), theirs: float("inf")}
-    for block in itertools.islice(itertools.cycle(best), 2 * rounds):
-        started = time.perf_counter()
-        block()
-        best[block] = min(best[block], time.perf_counter() - started)
-    return Row(what, best[ours] / BLOCK * 1e6, best[theirs] / BLOCK * 1e6, c_us)
+def _encoders(c: ctypes.CDLL, signed: bool) -> dict[str, Turn]:
+    return _turns(_encode_ours(signed), _encode_theirs(signed), _encode_c(c, signed))
 
 
-def _encode_ours(key: bytes | None) -> Block:
-    sender = Sender(1, 1, Signer(key, (0, 1, 1)) if key else None)
+def _decoders(c: ctypes.CDLL, signed: bool) -> dict[str, Turn]:
+    return _turns(_decode_ours(signed), _decode_theirs(signed), _decode_c(c, signed))
+
+
+def _turns(ours: Block, theirs: Block, c: Block) -> dict[str, Turn]:
+    return {name: timed(block, BLOCK) for name, block in zip(NAMES, (ours, theirs, c), strict=True)}
+
+
+def _sender(signed: bool) -> Sender:
+    return Sender(1, 1, Signer(KEY, (0, 1, 1)) if signed else None)
+
+
+def _encode_ours(signed: bool) -> Block:
+    sender = _sender(signed)
 
     def block() -> None:
         for _ in range(BLOCK):
@@ -90,12 +66,12 @@ def _encode_ours(key: bytes | None) -> Block:
     return block
 
 
-def _decode_ours(key: bytes | None) -> Block:
-    sender = Sender(1, 1, Signer(key, (0, 1, 1)) if key else None)
+def _decode_ours(signed: bool) -> Block:
+    sender = _sender(signed)
     frames = [sender.frame(Measurement(*FIELDS)) for _ in range(BLOCK)]
 
     def block() -> None:
-        receiver = Receiver(Verifier(key) if key else None)
+        receiver = Receiver(Verifier(KEY) if signed else None)
         assert sum(len(receiver.receive(frame)) for frame in frames) == BLOCK
 
     return block
@@ -131,15 +107,22 @@ def _decode_theirs(signed: bool) -> Block:
     return block
 
 
-def _bench_c() -> list[float]:
-    """Encode, decode, the same signed in mavgen's C [us]: -O2, the host's compiler or ziglang."""
-    compiler = shutil.which("cc")
-    command = [compiler] if compiler else [sys.executable, "-m", "ziglang", "cc"]
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        generate(dialect_path(), "C", folder / "include")
-        program = folder / "bench"
-        flags = [*C_FLAGS, "-isystem", str(folder / "include")]
-        subprocess.run([*command, *flags, str(C_PROGRAM), "-o", str(program)], check=True)
-        told = subprocess.run([program], check=True, capture_output=True, text=True).stdout
-    return [float(microseconds) for microseconds in told.split()]
+def _compiled(stack: ExitStack) -> ctypes.CDLL:
+    headers = new_folder(stack)
+    generate(dialect_path(), "C", headers)
+    library = c_library("codec.c", {}, stack, headers)
+    library.use_key(KEY)
+    return library
+
+
+def _encode_c(c: ctypes.CDLL, signed: bool) -> Block:
+    return lambda: c.encode(BLOCK, signed)
+
+
+def _decode_c(c: ctypes.CDLL, signed: bool) -> Block:
+    c.encode(BLOCK, signed)
+
+    def block() -> None:
+        assert c.decode(BLOCK, signed) == BLOCK
+
+    return block

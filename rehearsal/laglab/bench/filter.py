@@ -1,22 +1,24 @@
-"""What a tick of each filter costs, all measured side by side in one go."""
+"""What a tick of each filter costs."""
 
 import time
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from importlib.util import find_spec
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from rich.table import Table
 
+from laglab.bench.harness import Bench, Contest, Progress, microseconds
+from laglab.bench.result import Figure, Result
 from laglab_control import (
     ESTIMATORS,
     Controller,
     DelayedEkf,
     Echo,
     Estimator,
+    LiteralPopf,
     ReplayedInputs,
     RobotModel,
     StationConfig,
@@ -39,15 +41,51 @@ class Drive(NamedTuple):
     measurements: Array
 
 
-Turn = Callable[[Drive, int], float]
+Ticks = Callable[[Drive, int], float]
 """Goes through the drive with delay m; the seconds that a tick took once measurements came."""
 
+DELAYS, CONTROLLER_DELAYS = (4, 40, 400), (2, 20, 200)
 
-class Timing(NamedTuple):
-    """What a tick of one filter costs at each delay [µs]."""
 
-    name: str
-    by_delay: dict[int, float]
+def bench(ticks: int) -> Bench:
+    """Each filter over the same drive at m = 4, 40 and 400; the controllers at half of that, for
+    with n = m a measurement is as old when its command comes into force."""
+    alone = filters()
+    yardstick = FILTERPY if FILTERPY in alone else OURS[0]
+    contests = [
+        _contest("the filter alone", yardstick, alone, DELAYS, ticks),
+        _contest(
+            "filter, extrapolation over n = m ticks, law",
+            OURS[0],
+            controllers(),
+            CONTROLLER_DELAYS,
+            ticks,
+        ),
+    ]
+    return Bench("filter", contests, _growths)
+
+
+def _contest(
+    title: str, yardstick: str, contenders: dict[str, Ticks], delays: Sequence[int], ticks: int
+) -> Contest:
+    drive = make_drive(ticks + max(delays))
+    cases = {
+        f"m = {m}": {name: partial(go, drive, m) for name, go in contenders.items()} for m in delays
+    }
+    return Contest(title, microseconds("tick"), yardstick, cases)
+
+
+def _growths(results: Sequence[Result], _: Progress) -> list[Figure]:
+    """How what a tick costs grows from the first delay to the last."""
+    return [growth for result in results for growth in _growth(result)]
+
+
+def _growth(result: Result) -> Iterator[Figure]:
+    cases = list(dict.fromkeys(timing.case for timing in result.timings))
+    first, last = cases[0], cases[-1]
+    for name in dict.fromkeys(timing.name for timing in result.timings):
+        growth = result.fastest(last, name) / result.fastest(first, name)
+        yield Figure(f"{name}, {last} to {first}", growth, "×")
 
 
 def make_drive(ticks: int) -> Drive:
@@ -57,41 +95,27 @@ def make_drive(ticks: int) -> Drive:
     return Drive(inputs, random.normal(size=(ticks + 1, 3)) * 0.1)
 
 
-def timings(
-    contenders: dict[str, Turn], delays: tuple[int, ...], ticks: int, rounds: int
-) -> Iterator[Timing]:
-    """Round after round in turn, so that a busy machine disturbs all alike; the fastest of a
-    filter's turns counts, as the least disturbed one."""
-    drive = make_drive(ticks + max(delays))
-    fastest = {(name, m): np.inf for name in contenders for m in delays}
-    for _ in range(rounds):
-        for name, m in fastest:
-            fastest[name, m] = min(fastest[name, m], contenders[name](drive, m))
-    for name in contenders:
-        yield Timing(name, {m: fastest[name, m] * 1e6 for m in delays})
-
-
-def filters() -> dict[str, Turn]:
+def filters() -> dict[str, Ticks]:
     """Ours, the definitions that they must keep up with, and filterpy's EKF where installed."""
     model = RobotModel()
-    contenders: dict[str, Turn] = {
-        name: partial(_estimator_turn, ESTIMATORS[name].make(model)) for name in OURS
+    contenders: dict[str, Ticks] = {
+        name: partial(_estimator_tick, ESTIMATORS[name].make(model)) for name in OURS
     }
-    contenders["popf, product taken anew"] = _literal_popf_turn
+    contenders["popf, product taken anew"] = partial(_estimator_tick, LiteralPopf(model))
     contenders["EKF rerun over window"] = partial(
-        _estimator_turn, DelayedEkf(model, ReplayedInputs(model))
+        _estimator_tick, DelayedEkf(model, ReplayedInputs(model))
     )
     if find_spec("filterpy"):
-        contenders[FILTERPY] = _filterpy_turn
+        contenders[FILTERPY] = _filterpy_tick
     return contenders
 
 
-def controllers() -> dict[str, Turn]:
+def controllers() -> dict[str, Ticks]:
     """The whole of a tick but for the messages: filter, extrapolation over n = m ticks, law."""
-    return {name: partial(_controller_turn, name) for name in OURS}
+    return {name: partial(_controller_tick, name) for name in OURS}
 
 
-def _estimator_turn(estimator: Estimator[Any], drive: Drive, m: int) -> float:
+def _estimator_tick(estimator: Estimator[Any], drive: Drive, m: int) -> float:
     arrivals = constant_delay(drive.measurements, m)
     state = estimator.correct(estimator.start(START, P_0), arrivals[0])
     started = 0.0
@@ -102,7 +126,7 @@ def _estimator_turn(estimator: Estimator[Any], drive: Drive, m: int) -> float:
     return (time.perf_counter() - started) / (len(drive.inputs) - m)
 
 
-def _controller_turn(name: str, drive: Drive, m: int) -> float:
+def _controller_tick(name: str, drive: Drive, m: int) -> float:
     config = StationConfig(
         estimator=name, initial_estimate=START, initial_covariance=P_0, command_delay=m
     )
@@ -121,29 +145,7 @@ def _controller_turn(name: str, drive: Drive, m: int) -> float:
     return (time.perf_counter() - started) / (len(drive.inputs) - m)
 
 
-def _literal_popf_turn(drive: Drive, m: int) -> float:
-    """(27), (28) as they stand: M* is a product of m factors, taken anew at every tick."""
-    model, x, P, K = RobotModel(), START, P_0, np.zeros((3, 3))
-    priors, factors = [(x, P)], []
-    started = 0.0
-    for k, u in enumerate(drive.inputs, start=1):
-        started = time.perf_counter() if k == m + 1 else started
-        factors.append(model.A(x, u).dot(np.eye(3) - K))
-        x, P = model.predict(x, P, u)
-        priors.append((x, P))
-        if k >= m:
-            x_s, P_s = priors[k - m]
-            M = np.eye(3)
-            for factor in reversed(factors[k - m :]):
-                M = M.dot(factor)
-            K = M.dot(P_s).dot(np.linalg.inv(P_s + model.R))
-            x = x + K.dot(model.innovation(drive.measurements[k - m], x_s))
-            P = P - K.dot(P_s).dot(M.T)
-            P = (P + P.T) / 2
-    return (time.perf_counter() - started) / (len(drive.inputs) - m)
-
-
-def _filterpy_turn(drive: Drive, m: int) -> float:
+def _filterpy_tick(drive: Drive, m: int) -> float:
     """The same model and the same ticks; like our `ekf` it takes z_{k-m} for z_k."""
     from filterpy.kalman import ExtendedKalmanFilter
 
@@ -160,21 +162,3 @@ def _filterpy_turn(drive: Drive, m: int) -> float:
             z = drive.measurements[k - m]
             ekf.update(z, model.H, model.h, residual=model.innovation)
     return (time.perf_counter() - started) / (len(drive.inputs) - m)
-
-
-def timings_table(title: str, rows: list[Timing], yardstick: str) -> Table:
-    """Microseconds a tick at each delay; how the last delay's compare with the first's, and the
-    first's with those of the yardstick."""
-    table = Table(title=title, caption=f"the yardstick is {yardstick}", box=None)
-    delays = list(rows[0].by_delay)
-    unit = next(row.by_delay[delays[0]] for row in rows if row.name == yardstick)
-    table.add_column("µs a tick", no_wrap=True)
-    for m in delays:
-        table.add_column(f"m={m}", justify="right", no_wrap=True)
-    table.add_column("last:first", justify="right", no_wrap=True)
-    table.add_column("to yardstick", justify="right", no_wrap=True)
-    for name, by_delay in rows:
-        first, last = by_delay[delays[0]], by_delay[delays[-1]]
-        costs = [f"{by_delay[m]:.1f}" for m in delays]
-        table.add_row(name, *costs, f"{last / first:.2f}", f"{first / unit:.2f}")
-    return table

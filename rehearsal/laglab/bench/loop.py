@@ -1,129 +1,69 @@
-"""How fast the loop is, against a bare echo of its bytes and against the same loop by hand.
-
-Of each way the fastest round counts, as in timeit: what else the machine does only adds to it.
-The median tells how much that was.
-"""
+"""How fast the loop is, against a bare echo of its bytes and against the same loop by hand."""
 
 import tempfile
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from statistics import median
-from typing import NamedTuple
-
-from rich.table import Table
+from typing import get_args
 
 from laglab.bench import by_hand
-from laglab.bench.round_trip import seconds_per_echo, tick_sizes
-from laglab.errors import RunError
-from laglab.runs.rehearse import Transport, rehearse_apart
-from laglab.scenario import Scenario, load
-from laglab_gateway import TimingReport
+from laglab.bench.harness import Bench, Contest, Progress, Turn, microseconds
+from laglab.bench.result import Figure, Result
+from laglab.bench.round_trip import Link, seconds_per_echo, tick_sizes
+from laglab.bench.whole_run import SAMPLE_TIME, lateness, loop_of, loop_scenario, seconds_per_tick
 
-TRANSPORTS: tuple[Transport, ...] = ("udp", "serial")
+TICK = microseconds("tick")
+LINKS: tuple[Link, ...] = get_args(Link)
 ESTIMATORS = ("popf", "raw")
-SAMPLE_TIME = 0.01
-WAYS = ("bare echo", "by hand", "laglab")
-
-Case = tuple[Transport, str]
-"""Transport and estimator."""
-Progress = Callable[[str], None]
+ECHO, BY_HAND, OURS = "bare echo", "by hand", "laglab"
 
 
-class Times(NamedTuple):
-    """Seconds a tick takes each way, in one round or over all."""
+def bench(ticks: int, realtime: float, links: Sequence[Link] = LINKS) -> Bench:
+    """Runs of so many ticks, with a filter in the loop and with none; at the end, for `realtime`
+    seconds, one that keeps to the clock."""
+    cases = {f"{link}, {name}": _ways(link, name, ticks) for link in links for name in ESTIMATORS}
+    n, m, *_ = loop_of(loop_scenario(ESTIMATORS[0], ticks))
+    contest = Contest(f"the loop, n = {n}, m = {m}", TICK, OURS, cases)
 
-    bare_echo: float
-    by_hand: float
-    laglab: float
+    def figures(results: Sequence[Result], progress: Progress) -> list[Figure]:
+        progress("real time")
+        return [*_speeds(results[0], list(cases)), *_lateness(realtime)]
 
-
-def loop_scenario(estimator: str, ticks: int) -> Scenario:
-    """n = 10 and m = 20, noise on; an estimator in the loop or none, within the same limits."""
-    return load(
-        "lab",
-        {
-            "estimator": estimator,
-            "duration": ticks * SAMPLE_TIME,
-            "sample_time": SAMPLE_TIME,
-            "initial_covariance": 1e-4,
-            "initial_estimate": "start",
-        },
-    )
+    return Bench("loop", [contest], figures)
 
 
-def measure(
-    rounds: int, ticks: int, progress: Progress, transports: Sequence[Transport] = TRANSPORTS
-) -> dict[Case, list[Times]]:
-    """Times by round, in each of which every way is measured once, one after another."""
-    cases = [(transport, estimator) for transport in transports for estimator in ESTIMATORS]
-    taken: dict[Case, list[Times]] = {case: [] for case in cases}
-    for number in range(1, rounds + 1):
-        for transport, estimator in cases:
-            progress(f"round {number} of {rounds}: {transport}, {estimator}")
-            taken[transport, estimator].append(_one_round(transport, estimator, ticks))
-    return taken
-
-
-def _over(rounds: Iterable[Times], of_way: Callable[[Iterable[float]], float]) -> Times:
-    return Times(*map(of_way, zip(*rounds, strict=True)))
-
-
-def _one_round(transport: Transport, estimator: str, ticks: int) -> Times:
+def _ways(link: Link, estimator: str, ticks: int) -> dict[str, Turn]:
     scenario = loop_scenario(estimator, ticks)
+    sizes = tick_sizes(estimates=estimator != "raw")
+    return {
+        ECHO: lambda: seconds_per_echo(link, sizes, ticks),
+        BY_HAND: _in_a_folder(lambda folder: by_hand.seconds_per_tick(link, scenario, folder)),
+        OURS: _in_a_folder(lambda folder: seconds_per_tick(link, scenario, folder)),
+    }
+
+
+def _in_a_folder(turn: Callable[[Path], float]) -> Turn:
+    """An empty one, which is gone afterwards."""
+
+    def in_folder() -> float:
+        with tempfile.TemporaryDirectory(prefix="laglab-bench-") as folder:
+            return turn(Path(folder))
+
+    return in_folder
+
+
+def _speeds(result: Result, cases: Sequence[str]) -> Iterator[Figure]:
+    """The loop's against the clock and against the link alone."""
+    for case in cases:
+        ours = result.fastest(case, OURS) * TICK.seconds
+        yield Figure(f"{case}: {OURS}", SAMPLE_TIME / ours, "× real time")
+    for case in cases:
+        echoes = result.fastest(case, OURS) / result.fastest(case, ECHO)
+        yield Figure(f"{case}: {OURS}", echoes, "bare echoes")
+
+
+def _lateness(seconds: float) -> Iterator[Figure]:
     with tempfile.TemporaryDirectory(prefix="laglab-bench-") as folder:
-        return Times(
-            seconds_per_echo(transport, tick_sizes(estimates=estimator != "raw"), ticks),
-            by_hand.seconds_per_tick(transport, scenario, Path(folder)),
-            _seconds_per_tick(transport, scenario, Path(folder)),
-        )
-
-
-def _seconds_per_tick(transport: Transport, scenario: Scenario, directory: Path) -> float:
-    """As `laglab run` runs it, from its first tick to its last."""
-    ending = rehearse_apart(scenario, transport, directory)
-    if ending.outcome is None:
-        raise RunError(f"the loop over {transport} ended early: {ending.problem}")
-    return ending.loop_seconds / scenario.last_tick
-
-
-def measure_lateness(seconds: float) -> TimingReport:
-    """Of the ticks of `laglab run lab --pace realtime` over UDP."""
-    scenario = load("lab", {"pace": "realtime", "duration": seconds})
-    with tempfile.TemporaryDirectory(prefix="laglab-bench-") as folder:
-        ending = rehearse_apart(scenario, "udp", Path(folder))
-    if ending.timing is None:
-        raise RunError(f"the real-time loop ended early: {ending.problem}")
-    return ending.timing
-
-
-COLUMNS = (*WAYS, "× real time", "× by hand", "echoes")
-
-
-def times_table(measured: dict[Case, list[Times]]) -> Table:
-    """A row each for transport and estimator: µs a tick each way, and ours in ratios."""
-    title = "µs a tick in the fastest round (in the median one), n = 10, m = 20"
-    table = Table("link", "estimator", box=None, title=title)
-    for heading in COLUMNS:
-        table.add_column(heading, justify="right", no_wrap=True)
-    for (transport, estimator), rounds in measured.items():
-        times, usual = _over(rounds, min), _over(rounds, median)
-        microseconds = [
-            f"{1e6 * fastest:.0f} ({1e6 * middle:.0f})"
-            for fastest, middle in zip(times, usual, strict=True)
-        ]
-        ratios = (
-            f"{SAMPLE_TIME / times.laglab:.0f}",
-            f"{times.by_hand / times.laglab:.2f}",
-            f"{times.laglab / times.bare_echo:.1f}",
-        )
-        table.add_row(transport, estimator, *microseconds, *ratios)
-    return table
-
-
-def lateness_line(timing: TimingReport) -> str:
-    """How late the ticks of a real-time run began."""
-    p50, p99, most = (1e3 * each for each in (timing.p50_s, timing.p99_s, timing.max_s))
-    return (
-        f"real time, late by: p50 {p50:.3f} ms, p99 {p99:.3f} ms, max {most:.3f} ms; "
-        f"deadlines missed: {timing.missed_deadlines}"
-    )
+        late = lateness(seconds, Path(folder))
+    for name, value in (("p50", late.p50_s), ("p99", late.p99_s), ("max", late.max_s)):
+        yield Figure(f"real time, late by: {name}", 1e3 * value, "ms")
+    yield Figure("real time: deadlines missed", late.missed_deadlines, "")

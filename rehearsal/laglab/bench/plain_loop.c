@@ -1,13 +1,9 @@
 /* The model without FMI: what a loop in C over robots costs. */
 #include <stdlib.h>
 
+#include "export.h"
 #include "robot.h"
-
-#ifdef _WIN32
-#define EXPORT __declspec(dllexport)
-#else
-#define EXPORT __attribute__((visibility("default")))
-#endif
+#include "variables.h"
 
 enum { READINGS = 8 };
 
@@ -16,12 +12,13 @@ EXPORT Robot *plain_start(size_t count) {
     Robot *robots = calloc(count, sizeof *robots);
     for (size_t i = 0; robots && i < count; i++) {
         Robot *robot = &robots[i];
-        robot->wheel_radius = 0.05;
-        robot->track = 0.6;
-        robot->sample_time = 0.01;
-        robot->wheel_noise_variance = 0.01;
-        robot->measurement_variance_x = robot->measurement_variance_y = 0.01;
-        robot->measurement_variance_theta = 0.018;
+        robot->wheel_radius = VARIABLE[VR_WHEEL_RADIUS].start;
+        robot->track = VARIABLE[VR_TRACK].start;
+        robot->sample_time = VARIABLE[VR_SAMPLE_TIME].start;
+        robot->wheel_noise_variance = VARIABLE[VR_WHEEL_NOISE_VARIANCE].start;
+        robot->measurement_variance_x = VARIABLE[VR_MEASUREMENT_VARIANCE_X].start;
+        robot->measurement_variance_y = VARIABLE[VR_MEASUREMENT_VARIANCE_Y].start;
+        robot->measurement_variance_theta = VARIABLE[VR_MEASUREMENT_VARIANCE_THETA].start;
         robot->noise = 1;
         robot->integration = INTEGRATION_EULER;
         robot->seed = (int64_t)i + 1;

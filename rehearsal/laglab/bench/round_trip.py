@@ -6,6 +6,7 @@ import tty
 from collections.abc import Callable
 from queue import Queue
 from time import perf_counter
+from typing import Literal
 
 from msgspec import Struct
 
@@ -15,6 +16,8 @@ from laglab_protocol import Command, Estimate, Measurement, Message, Sender, Tic
 POSE = (0.1, 0.1, 0.1)
 COVARIANCE = (0.1, 0.1, 0.1, 0.1, 0.1, 0.1)
 """Any doubles whose last byte is not zero, so that no frame is cut short."""
+
+Link = Literal["udp", "serial"]
 
 
 class EchoOrder(Struct, frozen=True):
@@ -52,9 +55,9 @@ def _size(messages: list[Message]) -> int:
     return sum(len(sender.frame(message)) for message in messages)
 
 
-def seconds_per_echo(transport: str, sizes: Sizes, ticks: int) -> float:
+def seconds_per_echo(link: Link, sizes: Sizes, ticks: int) -> float:
     """Wall time [s] of one round trip, over `ticks` of them."""
-    return _over_udp(sizes, ticks) if transport == "udp" else _over_pty(sizes, ticks)
+    return _over_udp(sizes, ticks) if link == "udp" else _over_pty(sizes, ticks)
 
 
 def _over_udp(sizes: Sizes, ticks: int) -> float:

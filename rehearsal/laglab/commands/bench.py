@@ -1,101 +1,81 @@
 """`laglab bench`: ratios, measured side by side in one run."""
 
-from typing import Annotated, Literal
+from contextlib import ExitStack
+from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.table import Table
 
+from laglab import bench
 from laglab.bench import codec as codec_bench
 from laglab.bench import filter as filter_bench
+from laglab.bench.round_trip import Link
+from laglab.commands.group import group
 from laglab.extras import STEPPING, require
 
-Link = Literal["udp", "serial"]
+RoundsOption = Annotated[int, typer.Option("--rounds", min=1, help="Turns of each contender.")]
+JsonOption = Annotated[
+    typer.FileTextWrite | None,
+    typer.Option(
+        "--json",
+        metavar="FILE",
+        encoding="utf-8",
+        lazy=False,
+        help="Write what was measured here too.",
+    ),
+]
+TicksOption = Annotated[int, typer.Option("--ticks", min=10, help="Ticks of each turn.")]
 
-app = typer.Typer(help="Ratios, measured side by side in one run.", no_args_is_help=True)
-
-
-@app.command("loop")
-def bench_loop(
-    rounds: Annotated[int, typer.Option(min=1, help="Each way is measured so many times.")] = 9,
-    ticks: Annotated[int, typer.Option(min=100, help="Ticks of each measurement.")] = 2000,
-    realtime: Annotated[float, typer.Option(min=1.0, help="Seconds of real-time pacing.")] = 5.0,
-    link: Annotated[Link | None, typer.Option(help="Only over this one.")] = None,
-) -> None:
-    """The lock-step loop over UDP and a pty, against a bare echo and against one by hand."""
-    require(STEPPING)
-    from laglab.bench import loop as loop_bench  # needs FMPy
-
-    console = Console()
-    with Console(stderr=True).status("") as status:
-        links = (link,) if link else loop_bench.TRANSPORTS
-        measured = loop_bench.measure(rounds, ticks, status.update, links)
-        status.update("real time")
-        timing = loop_bench.measure_lateness(realtime)
-    console.print(loop_bench.times_table(measured), crop=False)
-    console.print(loop_bench.lateness_line(timing), highlight=False, soft_wrap=True)
-
-
-@app.command("filter")
-def bench_filter(
-    ticks: Annotated[int, typer.Option(min=10, help="Length of the drive.")] = 1000,
-    rounds: Annotated[int, typer.Option(min=1, help="Turns of each filter.")] = 8,
-) -> None:
-    """What a tick of each filter costs at m + n = 4, 40 and 400, beside filterpy's EKF."""
-    console = Console()
-    alone = _timed(console, "filters", filter_bench.filters(), (4, 40, 400), ticks, rounds)
-    has_filterpy = any(row.name == filter_bench.FILTERPY for row in alone)
-    yardstick = filter_bench.FILTERPY if has_filterpy else "ekf"
-    console.print(filter_bench.timings_table("the filter alone", alone, yardstick))
-    whole = _timed(console, "controllers", filter_bench.controllers(), (2, 20, 200), ticks, rounds)
-    title = "filter, extrapolation over n = m ticks, law"
-    console.print(filter_bench.timings_table(title, whole, "ekf"))
-    if not has_filterpy:
-        console.print("filterpy is not installed: `pip install filterpy` adds its EKF")
-
-
-@app.command("codec")
-def bench_codec(
-    rounds: Annotated[int, typer.Option(min=1, help="Blocks of messages of each codec.")] = 100,
-) -> None:
-    """Encode and decode, signed and not: our codec, pymavlink's, and mavgen's C."""
-    with Console(stderr=True).status("encoding and decoding"):
-        rows = codec_bench.bench_codec(rounds)
-    table = Table("", "ours, µs", "pymavlink, µs", "times faster", "C, µs", title="one message")
-    for row in rows:
-        ours, theirs, c = (f"{each:.2f}" for each in (row.ours_us, row.pymavlink_us, row.c_us))
-        table.add_row(row.what, ours, theirs, f"{row.times_faster:.1f}", c)
-    Console().print(table)
+app = group("Ratios, measured side by side in one run.")
 
 
 @app.command("fmu")
-def bench_fmu(
+def fmu(
     robots: Annotated[int, typer.Option(min=1, help="Size of the fleet.")] = 1000,
-    ticks: Annotated[int, typer.Option(min=100, help="Steps of a single robot.")] = 3000,
+    ticks: TicksOption = 3000,
+    rounds: RoundsOption = 5,
+    json: JsonOption = None,
 ) -> None:
     """One step of the FMU: ours, FMPy's two ways, the fleet per robot, a plain C loop."""
     require(STEPPING)
     from laglab.bench import fmu as fmu_bench  # needs FMPy
 
-    with Console(stderr=True).status("stepping"):
-        rows = fmu_bench.bench(robots, ticks)
-    table = Table("way", "µs a robot-step", f"× {fmu_bench.PLAIN}", title="one step of the robot")
-    for row in rows:
-        table.add_row(row.name, f"{1e6 * row.seconds:.3f}", f"{row.ratio:.2f}")
-    Console().print(table)
-    seconds = {row.name: row.seconds for row in rows}
-    for version in ("FMI 2", "FMI 3"):
-        faster = seconds[f"{version}, FMPy's slave methods"] / seconds[f"{version}, our stepper"]
-        Console().print(f"{version}: our stepper is {faster:.1f} times as fast as FMPy's methods")
+    with ExitStack() as stack:
+        _run(fmu_bench.bench(robots, ticks, stack), rounds, json)
 
 
-def _timed(
-    console: Console,
-    what: str,
-    contenders: dict[str, filter_bench.Turn],
-    delays: tuple[int, ...],
-    ticks: int,
-    rounds: int,
-) -> list[filter_bench.Timing]:
-    with console.status(f"timing {what}"):
-        return list(filter_bench.timings(contenders, delays, ticks, rounds))
+@app.command("codec")
+def codec(rounds: RoundsOption = 100, json: JsonOption = None) -> None:
+    """Encode and decode, signed and not: our codec, pymavlink's, and mavgen's C."""
+    with ExitStack() as stack:
+        _run(codec_bench.bench(stack), rounds, json)
+
+
+@app.command("filter")
+def filter_(ticks: TicksOption = 1000, rounds: RoundsOption = 8, json: JsonOption = None) -> None:
+    """What a tick of each filter costs at m + n = 4, 40 and 400, beside filterpy's EKF."""
+    _run(filter_bench.bench(ticks), rounds, json)
+
+
+@app.command("loop")
+def loop(
+    ticks: TicksOption = 2000,
+    realtime: Annotated[float, typer.Option(min=1.0, help="Seconds of real-time pacing.")] = 5.0,
+    link: Annotated[Link | None, typer.Option(help="Only over this one.")] = None,
+    rounds: RoundsOption = 9,
+    json: JsonOption = None,
+) -> None:
+    """The lock-step loop over UDP and a pty, against a bare echo and against one by hand."""
+    require(STEPPING)
+    from laglab.bench import loop as loop_bench  # needs FMPy
+
+    links = (link,) if link else loop_bench.LINKS
+    _run(loop_bench.bench(ticks, realtime, links), rounds, json)
+
+
+def _run(what: bench.Bench, rounds: int, json: typer.FileTextWrite | None) -> None:
+    with Console(stderr=True).status(what.name) as status:
+        report = bench.run(what, rounds, status.update)
+    bench.show(report, Console())
+    if json:
+        json.write(report.to_json())

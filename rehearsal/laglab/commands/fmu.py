@@ -7,14 +7,10 @@ import typer
 from rich.console import Console
 
 import laglab_fmu
+from laglab.commands.group import group
 from laglab.extras import STEPPING, require
 
-app = typer.Typer(help="The robot as an FMU.", no_args_is_help=True)
-
-
-@app.callback()
-def fmu() -> None:
-    """The robot as an FMU."""
+app = group("The robot as an FMU.")
 
 
 @app.command()

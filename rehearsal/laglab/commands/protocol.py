@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from laglab.commands.group import group
 from laglab.commands.run import KeyOption
 from laglab_conformance import Pace, Side
 from laglab_conformance import conform as test_conformance
@@ -13,7 +14,7 @@ from laglab_protocol import make_key
 from laglab_protocol.dialect.lint import lint as find_faults
 from laglab_protocol.dialect.mavgen import LANGUAGES, dialect_path, generate_into
 
-app = typer.Typer(help="The dialect, for those who write the other side.", no_args_is_help=True)
+app = group("The dialect, for those who write the other side.")
 
 DialectOption = Annotated[
     Path | None,

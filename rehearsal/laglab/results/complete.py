@@ -5,6 +5,9 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from laglab.errors import RefusedError, RunError
 from laglab.results.digest import Digest, digest
 from laglab.results.figure import save_figure
@@ -152,9 +155,17 @@ def summarise(
 
 
 def _final(end: Trace, scenario: Scenario) -> Final:
-    rho, theta_error = goal_errors(robot_pose(end)[-1:], scenario.goal)
-    numbers = rho[0], theta_error[0], end["v"][-1], end["omega"][-1]
+    """At the last tick; of what is told later or not at all, the last that is known."""
+    pose = robot_pose(end)
+    known = pose[~np.isnan(pose).any(axis=1)][-1:]
+    rho, theta_error = goal_errors(known, scenario.goal) if len(known) else ([np.nan], [np.nan])
+    numbers = rho[0], theta_error[0], _last(end["v"]), _last(end["omega"])
     return Final(*(float(number) if abs(number) < float("inf") else None for number in numbers))
+
+
+def _last(column: NDArray[np.float64]) -> float:
+    there = column[~np.isnan(column)]
+    return float(there[-1]) if len(there) else np.nan
 
 
 def _verdict(ending: Ending, final: Final, converged: bool, ticks: int, measured: bool) -> str:

@@ -1,0 +1,71 @@
+"""Whole runs as the benches need them: all that these know of scenarios and of how they are run."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+from laglab.errors import RunError
+from laglab.runs.ending import Ending
+from laglab.runs.rehearse import Transport, rehearse_apart
+from laglab.runs.robot_side import robot_parameters
+from laglab.runs.station_side import station_config
+from laglab.scenario import Scenario, load
+from laglab_control import INITIAL_VARIANCE, StationConfig
+from laglab_fmu import RobotParameters
+from laglab_gateway import TimingReport
+
+SAMPLE_TIME = RobotParameters.sample_time
+
+
+class Loop(NamedTuple):
+    """What a loop is, for who builds it by hand. Delays in ticks."""
+
+    command_delay: int
+    measurement_delay: int
+    last_tick: int
+    robot: RobotParameters
+    station: StationConfig
+
+
+def loop_scenario(estimator: str, ticks: int) -> Scenario:
+    """The delays, limits and noise of `lab`; an estimator in the loop, or none."""
+    return load(
+        "lab",
+        {
+            "estimator": estimator,
+            "duration": ticks * SAMPLE_TIME,
+            "sample_time": SAMPLE_TIME,
+            "initial_covariance": INITIAL_VARIANCE,
+            "initial_estimate": "start",
+        },
+    )
+
+
+def loop_of(scenario: Scenario) -> Loop:
+    """The same loop."""
+    return Loop(
+        scenario.command_delay,
+        scenario.measurement_delay,
+        scenario.last_tick,
+        robot_parameters(scenario),
+        station_config(scenario),
+    )
+
+
+def seconds_per_tick(transport: Transport, scenario: Scenario, directory: Path) -> float:
+    """Wall time [s] of one tick, as `laglab run` runs it, from its first tick to its last."""
+    return _run(transport, scenario, directory).loop_seconds / scenario.last_tick
+
+
+def lateness(seconds: float, directory: Path) -> TimingReport:
+    """Of `laglab run lab --pace realtime` over UDP."""
+    scenario = load("lab", {"pace": "realtime", "duration": seconds})
+    timing = _run("udp", scenario, directory).timing
+    assert timing is not None, "it was paced by the clock"
+    return timing
+
+
+def _run(transport: Transport, scenario: Scenario, directory: Path) -> Ending:
+    ending = rehearse_apart(scenario, transport, directory)
+    if ending.outcome is None:
+        raise RunError(f"the loop over {transport} ended early: {ending.problem}")
+    return ending
