@@ -1,7 +1,7 @@
 """The mathematics, on numpy alone: model, estimators, laws, prediction over the delays."""
 
 from laglab_control.angle import wrap
-from laglab_control.controller import Control, Controller, StationConfig
+from laglab_control.controller import FAR, Control, Controller, StationConfig, is_far
 from laglab_control.errata import Erratum, PrintedController
 from laglab_control.errors import ConfigError, ControlError, StampError
 from laglab_control.estimators import (
@@ -26,6 +26,7 @@ from laglab_control.robot import RobotModel
 
 __all__ = [
     "ESTIMATORS",
+    "FAR",
     "Applied",
     "ConfigError",
     "Control",
@@ -53,6 +54,7 @@ __all__ = [
     "State",
     "StationConfig",
     "constant_delay",
+    "is_far",
     "replay",
     "wrap",
 ]

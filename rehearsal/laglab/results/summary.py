@@ -106,7 +106,10 @@ def _verdict(ending: Ending, summary: dict[str, Any]) -> str:
     tick = ending.outcome.tick
     match ending.outcome.reason:
         case EndReason.DIVERGED:
-            return f"stopped at tick {tick}: the estimate diverged (not finite, or beyond 1 km)"
+            return (
+                f"stopped at tick {tick}: the estimate diverged "
+                "(not finite, or beyond 1 km of both start and goal)"
+            )
         case EndReason.INTERRUPTED:
             return f"interrupted at tick {tick}"
         case EndReason.FAILED:
