@@ -3,6 +3,7 @@
 from laglab_gateway.core import Gateway
 from laglab_gateway.drive import Safety
 from laglab_gateway.errors import (
+    ConfigError,
     GatewayError,
     RobotSilentError,
     StationSilentError,
@@ -48,6 +49,7 @@ __all__ = [
     "TRACE_FILE",
     "Burst",
     "Channel",
+    "ConfigError",
     "Direction",
     "Event",
     "ExtraDelay",

@@ -8,7 +8,6 @@ own (`relay`).
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from laglab_gateway.drive import Drive, Safety, follow, refusal
@@ -19,6 +18,7 @@ from laglab_gateway.link.timeline import Direction
 from laglab_gateway.record.audit import Audit, DirectionAudit
 from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import RobotState, Services
+from laglab_gateway.values import Positive, Ticks, checked
 from laglab_protocol import (
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
@@ -39,15 +39,18 @@ from laglab_protocol import (
 )
 
 
-@dataclass(frozen=True)
+@checked
 class GatewayConfig:
-    """Delays n and m [ticks], the tick that ends the run, Ts [s], what else the link does."""
+    """Delays n and m [ticks], the tick that ends the run (None: none does), Ts [s], the failsafe.
 
-    command_delay: int
-    measurement_delay: int
-    last_tick: int
-    sample_time: float
-    safety: Safety = field(default_factory=Safety)
+    Raises ConfigError, naming the field, when one cannot be.
+    """
+
+    command_delay: Ticks
+    measurement_delay: Ticks
+    last_tick: Ticks | None
+    sample_time: Positive
+    safety: Safety = Safety()
 
 
 class Outcome(NamedTuple):
@@ -249,7 +252,8 @@ class RobotSide(ABC):
         """How the run ends at this tick; None when it goes on."""
         if self.station_end is not None:
             return Outcome(reason_of(self.station_end), self.tick)
-        if self.elapsed >= self._config.last_tick:
+        last = self._config.last_tick
+        if last is not None and self.elapsed >= last:
             return Outcome(EndReason.COMPLETED, self.tick)
         return None
 
