@@ -28,6 +28,7 @@ Probability = Annotated[Number, Field(ge=0, le=1)]
 Seconds = NotNegative
 Duration = Annotated[float, Field(strict=True, gt=0)]
 """[s]; `inf` for what has no end."""
+Switch = Annotated[bool, Field(strict=True)]
 Whole = Annotated[int, Field(strict=True)]
 Ticks = Annotated[Whole, Field(ge=0)]
 

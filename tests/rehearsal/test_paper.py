@@ -33,7 +33,7 @@ def test_fig5_reaches_the_goal_but_keeps_turning(rehearsed: Rehearsed) -> None:
 
 def test_fig5_without_limits_diverges(rehearsed: Rehearsed, tmp_path: Path) -> None:
     own = tmp_path / "unlimited.toml"
-    own.write_text('estimator = "raw"\n')
+    own.write_text('estimator.kind = "raw"\n')
     rehearsed(str(own), exit_code=3)
     assert np.abs(read_trace(tmp_path / "run" / "trace.csv")["v"]).max() > 100
 

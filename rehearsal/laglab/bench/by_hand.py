@@ -66,18 +66,19 @@ def robot_process(scenario: Scenario, transport: str, directory: Path, reports: 
         link.recv_match(type="HEARTBEAT", blocking=True)
         began = perf_counter()
         _drive(scenario, link, fmu, references, trace)
-        reports.send(Progress(scenario.last_tick, perf_counter() - began))
+        reports.send(Progress(scenario.must_end(), perf_counter() - began))
 
 
 def _drive(
     scenario: Scenario, link: Any, fmu: FMU2Slave, references: dict[str, int], trace: Any
 ) -> None:
-    n, m, Ts = scenario.command_delay, scenario.measurement_delay, scenario.sample_time
+    n, m, Ts = scenario.link.command_delay, scenario.link.measurement_delay, scenario.sample_time
+    r, L = scenario.plant.wheel_radius, scenario.plant.track
     outputs, inputs = [references[name] for name in OUTPUTS], [references[name] for name in INPUTS]
     commands: deque[tuple[float, float]] = deque([(0.0, 0.0)] * n)
     measurements: deque[tuple[float, ...]] = deque()
     v = omega = 0.0
-    for k in range(scenario.last_tick + 1):
+    for k in range(scenario.must_end() + 1):
         pose = fmu.getReal(outputs)
         measurements.append((*pose[3:], v, omega, k, max(k - 1 - n, -1)))
         due = [measurements.popleft()] if k >= m else []
@@ -95,10 +96,10 @@ def _drive(
         v, omega = commands.popleft()
         seen = (estimate.x, estimate.y, estimate.theta) if estimate else ("", "", "")
         trace.writerow([k, k * Ts, *pose, *seen, command.v, command.omega, v, omega])
-        half_turn = omega * scenario.track / 2
+        half_turn = omega * L / 2
         fmu.setReal(
             inputs,
-            [(v - half_turn) / scenario.wheel_radius, (v + half_turn) / scenario.wheel_radius],
+            [(v - half_turn) / r, (v + half_turn) / r],
         )
         fmu.doStep(currentCommunicationPoint=k * Ts, communicationStepSize=Ts)
 
@@ -119,7 +120,7 @@ def station_process(scenario: Scenario, address: str, _: Connection) -> None:
     arrived: list[Measured] = []
     echoes: list[Echo] = []
     tick = -1
-    while tick < scenario.last_tick:
+    while tick < scenario.must_end():
         message = link.recv_match(type=["LAGLAB_MEASUREMENT", "LAGLAB_TICK"], blocking=True)
         if message.get_type() == "LAGLAB_MEASUREMENT":
             z = np.array([message.x, message.y, message.theta])

@@ -41,11 +41,11 @@ def loop_scenario(estimator: str, ticks: int) -> Scenario:
     return load(
         "lab",
         {
-            "estimator": estimator,
+            "estimator.kind": estimator,
             "duration": ticks * SAMPLE_TIME,
             "sample_time": SAMPLE_TIME,
-            "initial_covariance": 1e-4,
-            "initial_estimate": "start",
+            "estimator.initial_covariance": 1e-4,
+            "estimator.initial_estimate": "start",
         },
     )
 
@@ -82,7 +82,7 @@ def _seconds_per_tick(transport: Transport, scenario: Scenario, directory: Path)
     ending = rehearse(scenario, transport, directory, lambda _: None)
     if ending.outcome is None:
         raise RunError(f"the loop over {transport} ended early: {ending.problem}")
-    return ending.loop_seconds / scenario.last_tick
+    return ending.loop_seconds / scenario.must_end()
 
 
 def measure_lateness(seconds: float) -> dict[str, Any]:

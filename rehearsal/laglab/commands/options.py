@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from laglab.scenario import load
+from laglab.scenario import assignment, load, read_timeline
 
 ScenarioArgument = Annotated[
     str, typer.Argument(metavar="SCENARIO", help="A shipped scenario's name, or a TOML file.")
@@ -18,27 +18,27 @@ def _option(*names: str, help: str, metavar: str | None = None) -> Any:  # noqa:
 
 
 POSE = "X,Y,THETA"
-OVERRIDES: dict[str, Any] = {
-    "estimator": Annotated[
-        list[str] | None,
-        _option("--estimator", help="The filter in the loop; further ones shadow it."),
+OPTIONS: dict[str, Any] = {
+    "link.command_delay": Annotated[int | None, _option("-n", help="Command delay [ticks].")],
+    "link.measurement_delay": Annotated[
+        int | None, _option("-m", help="Measurement delay [ticks].")
     ],
-    "command_delay": Annotated[int | None, _option("-n", help="Command delay [ticks].")],
-    "measurement_delay": Annotated[int | None, _option("-m", help="Measurement delay [ticks].")],
     "start": Annotated[str | None, _option("--start", help="Start pose.", metavar=POSE)],
     "goal": Annotated[str | None, _option("--goal", help="Goal pose.", metavar=POSE)],
     "seed": Annotated[int | None, _option("--seed", help="Seed of every random draw.")],
     "noise": Annotated[
         bool | None, _option("--noise/--no-noise", help="Wheel and measurement noise.")
     ],
-    "duration": Annotated[float | None, _option("--duration", help="Simulated time [s].")],
-    "initial_covariance": Annotated[float | None, _option("--p0", help="P_0 = VALUE·I.")],
-    "initial_estimate": Annotated[
+    "duration": Annotated[
+        float | None, _option("--duration", help="Simulated time [s]; inf: until you end it.")
+    ],
+    "estimator.initial_covariance": Annotated[float | None, _option("--p0", help="P_0 = VALUE·I.")],
+    "estimator.initial_estimate": Annotated[
         str | None, _option("--initial-estimate", help="x̂_0.", metavar=POSE)
     ],
-    "v_max": Annotated[float | None, _option("--v-max", help="Speed limit [m/s].")],
-    "omega_max": Annotated[float | None, _option("--omega-max", help="Turn limit [rad/s].")],
-    "goal_tolerance": Annotated[
+    "law.v_max": Annotated[float | None, _option("--v-max", help="Speed limit [m/s].")],
+    "law.omega_max": Annotated[float | None, _option("--omega-max", help="Turn limit [rad/s].")],
+    "law.goal_tolerance": Annotated[
         float | None, _option("--goal-tolerance", help="Turn on the spot inside it [m].")
     ],
     "pace": Annotated[str | None, _option("--pace", help="lockstep, or realtime.")],
@@ -46,13 +46,45 @@ OVERRIDES: dict[str, Any] = {
     "silence_timeout": Annotated[
         float | None, _option("--silence", help="Seconds until a silent side counts as gone.")
     ],
+    "plant.fmi": Annotated[int | None, _option("--fmi", help="The FMU's FMI version, 2 or 3.")],
+}
+"""Dotted key of a scenario → its command-line option."""
+OF_SEVERAL_KEYS: dict[str, Any] = {
+    "estimator": Annotated[
+        list[str] | None,
+        _option("--estimator", help="The filter in the loop; further ones shadow it."),
+    ],
     "timeline": Annotated[
         str | None,
         _option("--timeline", help="What the link does when: TOML, or a run's link.csv."),
     ],
-    "fmi": Annotated[int | None, _option("--fmi", help="The FMU's FMI version, 2 or 3.")],
+    "set": Annotated[
+        list[str] | None,
+        _option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Any key of a scenario, such as link.command.loss=0.1; again for more. "
+            "It beats the file, and an option of its own beats it.",
+        ),
+    ],
 }
-"""Scenario field → its command-line option."""
+
+
+def _overrides(options: dict[str, Any]) -> dict[str, object]:
+    """What beats the file; takes the options out that say it."""
+    own = {key: options.pop(_parameter(key)) for key in OPTIONS}
+    own = {key: value for key, value in own.items() if value is not None}
+    if names := options.pop("estimator"):
+        own |= {"estimator.kind": names[0]}
+        own |= {"estimator.compare": names[1:]} if names[1:] else {}
+    if timeline := options.pop("timeline"):
+        own |= read_timeline(timeline)
+    told = dict(map(assignment, options.pop("set") or []))
+    return {key: value for key, value in told.items() if key not in own} | own
+
+
+def _parameter(key: str) -> str:
+    return key.replace(".", "_")
 
 
 def on_scenario(command: Callable[..., None]) -> Callable[..., None]:
@@ -60,17 +92,15 @@ def on_scenario(command: Callable[..., None]) -> Callable[..., None]:
     own = list(inspect.signature(command).parameters.values())[1:]
 
     def wrapper(scenario: str, **options: Any) -> None:
-        overrides = {field: options.pop(field) for field in OVERRIDES}
-        given = {field: value for field, value in overrides.items() if value is not None}
-        if names := given.pop("estimator", None):
-            given |= {"estimator": names[0]} | ({"compare": names[1:]} if names[1:] else {})
-        command(load(scenario, given), **options)
+        overrides = _overrides(options)
+        command(load(scenario, overrides, lambda text: typer.echo(text, err=True)), **options)
 
+    hints = OF_SEVERAL_KEYS | {_parameter(key): hint for key, hint in OPTIONS.items()}
     parameters = [
         inspect.Parameter("scenario", inspect.Parameter.KEYWORD_ONLY, annotation=ScenarioArgument),
         *(
-            inspect.Parameter(field, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=hint)
-            for field, hint in OVERRIDES.items()
+            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=hint)
+            for name, hint in hints.items()
         ),
         *(parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY) for parameter in own),
     ]

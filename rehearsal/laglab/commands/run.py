@@ -5,7 +5,14 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+)
 
 from laglab.commands.options import on_scenario
 from laglab.errors import RunError, ScenarioError
@@ -75,12 +82,13 @@ def run(
 
 
 def progress_bar() -> Progress:
-    """Ticks done of ticks to do, on standard error."""
+    """Ticks done of ticks to do, if that is known, on standard error."""
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
-        TaskProgressColumn(),
-        TextColumn("tick {task.completed}/{task.total}"),
+        TaskProgressColumn(text_format_no_percentage=""),
+        TextColumn("tick"),
+        MofNCompleteColumn(),
         TimeElapsedColumn(),
         console=Console(stderr=True),
     )

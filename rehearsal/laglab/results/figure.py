@@ -48,11 +48,8 @@ def draw_side_by_side(runs: Sequence[tuple[Trace, Scenario]]) -> Figure:
 
 
 def title(scenario: Scenario) -> str:
-    """The scenario in a line: name, filter and delays."""
-    return (
-        f"{scenario.name}: {scenario.estimator}, "
-        f"n = {scenario.command_delay}, m = {scenario.measurement_delay}"
-    )
+    """The scenario in a line: name, filter, delays and noise."""
+    return f"{scenario.name}: {scenario.gist}"
 
 
 def draw_path(axes: Axes, trace: Trace, scenario: Scenario) -> None:

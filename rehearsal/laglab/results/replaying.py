@@ -10,12 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.table import Table
 
-from laglab.errors import ScenarioError
 from laglab.results.figure import empty_figure
 from laglab.results.summary import deviation
 from laglab.run.station_side import station_config
-from laglab.scenario import Scenario
-from laglab_control import ESTIMATORS
+from laglab.scenario import Scenario, changed
 from laglab_gateway import Trace
 from laglab_station import Heard, Shadow, shadow
 
@@ -32,10 +30,7 @@ def replay_session(scenario: Scenario, name: str, session: Sequence[Heard]) -> S
 
     Raises: ScenarioError, when there is no such filter.
     """
-    if name not in ESTIMATORS:
-        raise ScenarioError(f"--estimator: {name!r} is not one of {', '.join(ESTIMATORS)}")
-    config = station_config(scenario.model_copy(update={"estimator": name}))
-    return shadow(config, session)
+    return shadow(station_config(changed(scenario, {"estimator.kind": name})), session)
 
 
 def write_replays(replays: Replays, directory: Path) -> None:

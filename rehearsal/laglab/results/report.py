@@ -21,10 +21,10 @@ def write_results(
 ) -> dict[str, Any]:
     """Write ``summary.json`` and ``figure.png``; returns the summary."""
     summary = summarise(scenario, transport, ending, trace)
-    if scenario.compare:
+    if scenario.estimator.compare:
         deviations = compare(scenario, trace, directory / TLOG_FILE)
         summary["compare"] = {
-            name: rms_error(values, scenario.measurement_delay)
+            name: rms_error(values, scenario.link.measurement_delay)
             for name, values in deviations.items()
         }
         figure = draw_deviations(trace["time"], deviations, scenario)
@@ -39,9 +39,9 @@ def compare(scenario: Scenario, trace: Trace, tlog: Path) -> dict[str, NDArray[n
     """Deviations of the estimator in the loop, and of each in ``compare``, which shadows it on the
     session that was recorded."""
     session = list(read_session(tlog))
-    estimates = {scenario.estimator: loop_estimates(trace)}
-    for name in scenario.compare:
-        estimates[name] = np.full_like(estimates[scenario.estimator], np.nan)
+    estimates = {scenario.estimator.kind: loop_estimates(trace)}
+    for name in scenario.estimator.compare:
+        estimates[name] = np.full_like(estimates[scenario.estimator.kind], np.nan)
         replayed = replay_session(scenario, name, session)
         estimates[name][np.searchsorted(trace["tick"], replayed.ticks)] = replayed.estimates
     return {name: deviation(trace, values) for name, values in estimates.items()}

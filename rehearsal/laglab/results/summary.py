@@ -77,9 +77,9 @@ def summarise(
     simulated = ticks * scenario.sample_time
     summary = {
         "scenario": scenario.name,
-        "estimator": scenario.estimator,
-        "n": scenario.command_delay,
-        "m": scenario.measurement_delay,
+        "estimator": scenario.estimator.kind,
+        "n": scenario.link.command_delay,
+        "m": scenario.link.measurement_delay,
         "seed": scenario.seed,
         "transport": transport,
         "ticks": ticks,
@@ -90,7 +90,9 @@ def summarise(
             "v": float(trace["v"][-1]),
             "omega": float(trace["omega"][-1]),
         },
-        "rms_error": rms_error(deviation(trace, loop_estimates(trace)), scenario.measurement_delay),
+        "rms_error": rms_error(
+            deviation(trace, loop_estimates(trace)), scenario.link.measurement_delay
+        ),
         "converged": completed and has_converged(trace, scenario),
         "wall_time_s": ending.loop_seconds,
         "real_time_factor": simulated / ending.loop_seconds if ending.loop_seconds else None,

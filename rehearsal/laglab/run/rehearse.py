@@ -58,7 +58,7 @@ def rehearse(
     """
     setup = setup or Setup()
     directory.mkdir(parents=True, exist_ok=True)
-    (directory / SCENARIO_FILE).write_text(scenario.to_toml(), encoding="utf-8")
+    (directory / SCENARIO_FILE).write_text(scenario.to_toml(directory), encoding="utf-8")
     if transport == "inline":
         return _inline(scenario, directory, progress, setup)
     with _gateway_url(transport) as url:

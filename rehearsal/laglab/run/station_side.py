@@ -16,33 +16,25 @@ from laglab_station import Station
 
 def robot_model(scenario: Scenario) -> RobotModel:
     """What the controller believes of the robot."""
+    plant = scenario.plant
     return RobotModel(
         sample_time=scenario.sample_time,
-        wheel_radius=scenario.wheel_radius,
-        track=scenario.track,
-        Q=scenario.wheel_noise_variance * np.eye(2),
-        R=np.diag(scenario.measurement_variance),
+        wheel_radius=plant.wheel_radius,
+        track=plant.track,
+        Q=plant.wheel_noise_variance * np.eye(2),
+        R=np.diag(plant.measurement_variance),
     )
 
 
 def station_config(scenario: Scenario) -> StationConfig:
     """The remote station's side."""
-    law = Law(
-        goal=scenario.goal,
-        gamma=scenario.gamma,
-        lambda_=scenario.lambda_,
-        h=scenario.h,
-        v_max=scenario.v_max,
-        omega_max=scenario.omega_max,
-        goal_tolerance=scenario.goal_tolerance,
-    )
     return StationConfig(
-        estimator=scenario.estimator,
+        estimator=scenario.estimator.kind,
         model=robot_model(scenario),
-        law=law,
+        law=Law(goal=scenario.goal, **dict(scenario.law)),
         initial_estimate=scenario.first_estimate(),
-        initial_covariance=scenario.initial_covariance * np.eye(3),
-        command_delay=scenario.command_delay,
+        initial_covariance=scenario.estimator.initial_covariance * np.eye(3),
+        command_delay=scenario.link.command_delay,
     )
 
 

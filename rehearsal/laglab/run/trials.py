@@ -27,7 +27,11 @@ class _TraceKeeper(NoRecorder):
 def run_trial(
     scenario: Scenario, controller: Callable[[StationConfig], Controller] = Controller
 ) -> Trace:
-    """The scenario's trace, up to the tick at which it ended."""
+    """The scenario's trace, up to the tick at which it ended.
+
+    Raises: ScenarioError, when it would not end by itself.
+    """
+    scenario.must_end()
     keeper = _TraceKeeper()
     endpoint = InlineEndpoint(Station(station_config(scenario), controller))
     with open_gateway(scenario) as gateway:
@@ -38,4 +42,4 @@ def run_trial(
 
 def completed(trace: Trace, scenario: Scenario) -> bool:
     """Whether the trial went on to its last tick: it ends before when the estimate diverges."""
-    return int(trace["tick"][-1]) == scenario.last_tick
+    return int(trace["tick"][-1]) == scenario.must_end()
