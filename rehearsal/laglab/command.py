@@ -13,6 +13,7 @@ from laglab.commands import (
     protocol,
     replay,
     run,
+    scenario,
     scenarios,
     serial,
     sides,
@@ -33,6 +34,7 @@ app = typer.Typer(
 app.command("run")(run.run)
 app.command("replay")(replay.replay)
 app.command("scenarios")(scenarios.scenarios)
+app.command("scenario")(scenario.scenario)
 app.command("compare")(compare.compare)
 app.command("consistency")(consistency.consistency)
 app.command("errata")(errata.errata)

@@ -9,8 +9,9 @@ from pydantic import ValidationError
 from laglab.errors import ScenarioError
 from laglab.run.robot_side import gateway_config, robot_parameters
 from laglab.run.station_side import station_config
+from laglab.run.trials import run_trial
 from laglab.scenario import Scenario, assignment, changed, load, shipped
-from laglab.scenario.keys import ANY, places
+from laglab.scenario.keys import ANY, rows
 from laglab_control import ConfigError, Law, RobotModel, StationConfig
 from laglab_gateway import Impairments, Safety
 
@@ -123,7 +124,7 @@ def test_what_is_no_assignment(text: str) -> None:
 
 
 def test_every_key_can_be_set() -> None:
-    for place, key in places():
+    for place, key, _ in rows():
         if ANY not in place:
             allowed = load("fig6", {place: key.default} if key.default is not None else {})
             assert allowed.last_tick == 1000
@@ -134,7 +135,7 @@ def test_a_duration_without_end_has_no_last_tick() -> None:
     assert endless.last_tick is None
     assert gateway_config(endless).last_tick is None
     with pytest.raises(ScenarioError, match="duration: must be finite here, not inf"):
-        endless.must_end()
+        run_trial(endless)
 
 
 def test_the_distance_from_start_to_goal_is_what_counts() -> None:

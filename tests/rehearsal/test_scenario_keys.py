@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from laglab.run.robot_side import gateway_config, link_fates, robot_parameters, shown_parameters
 from laglab.run.station_side import station_config
 from laglab.scenario import Scenario, changed, load
-from laglab.scenario.keys import ANY, places
+from laglab.scenario.keys import ANY, rows
 from laglab_control import ESTIMATORS
 from laglab_gateway.link.log import LINK_HEADER
 
@@ -137,7 +137,7 @@ def test_the_strategies_know_every_key() -> None:
         known |= {f"{link}.{key}" for key in IMPAIRMENTS}
         known |= {f"{link}.burst.{key}" for key in BURST}
         known |= {f"{link}.extra_delay.{key}" for key in EXTRA_DELAY}
-    assert known == {place for place, _ in places()}
+    assert known == {row.place for row in rows()}
 
 
 @settings(max_examples=150, deadline=None)

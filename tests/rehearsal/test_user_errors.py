@@ -66,7 +66,7 @@ BROKEN_FILES = {
     "command_delay = 3": "command_delay: unknown key; did you mean link.command_delay",
     "link.comand_delay = 3": "link.comand_delay: unknown key; did you mean link.command_delay",
     "lnk.command_delay = 3": "lnk: unknown key; did you mean link",
-    "link.command.fog = 1": "link.command.fog: unknown key; known here: extra_delay, loss",
+    "link.command.fog = 1": "link.command.fog: unknown key; known here: loss, reorder",
     "link.command.burst.loss_god = 1": "link.command.burst.loss_god: unknown key; did you mean "
     "link.command.burst.loss_good",
     "link = 3": "link: must be a table, not 3",

@@ -10,6 +10,9 @@ from laglab.scenario.model import Scenario
 ANY = "N"
 """Stands for the number of an element in the place of a key of a list's tables."""
 
+NO_UNIT = "-"
+"""Of what is no number."""
+
 
 class Key(NamedTuple):
     """One key of a table."""
@@ -52,10 +55,26 @@ def _table_in(hint: object) -> type | None:
     return next((found for part in get_args(hint) if (found := _table_in(part))), None)
 
 
-def places(table: type = Scenario, above: str = "") -> Iterator[tuple[str, Key]]:
-    """Every key by its dotted place, those of all tables too."""
-    for key in keys(table):
-        place = above + key.name
-        yield place, key
+class Row(NamedTuple):
+    """A key at its place, and the value there; None: it is not set."""
+
+    place: str
+    key: Key
+    value: object
+
+
+def rows(value: object = None, table: type = Scenario, above: str = "") -> Iterator[Row]:
+    """Every key of a scenario, or of none, in the order of a file: each table after the values."""
+    for key in sorted(keys(table), key=lambda key: key.table is not None):
+        place, here = above + key.name, getattr(value, key.attribute, None)
+        yield Row(place, key, here)
         if key.table is not None:
-            yield from places(key.table, f"{place}.{ANY}." if key.many else f"{place}.")
+            for inside, one in _tables(key, place, here):
+                yield from rows(one, key.table, f"{inside}.")
+
+
+def _tables(key: Key, place: str, here: Any) -> list[tuple[str, object]]:
+    """The tables at a place, each with its own; where a list has none, what one would have."""
+    if not key.many:
+        return [(place, here)]
+    return [(f"{place}.{i}", one) for i, one in enumerate(here or ())] or [(f"{place}.{ANY}", None)]

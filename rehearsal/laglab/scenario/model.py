@@ -24,7 +24,7 @@ LAST = 2**32 - 1
 
 
 class Scenario(Table):
-    """What is run, how long and how fast; what the tables say is the robot's, the link's, ..."""
+    """What is run, for how long and at which pace; the tables say the rest."""
 
     name: Annotated[str, described("-", "What the run is called; by default as its file is.")] = ""
     description: Annotated[str, described("-", "What it shows, in a line.")] = ""
@@ -60,10 +60,16 @@ class Scenario(Table):
     silence_timeout: Annotated[
         Positive, described("s", "A side that is silent for so long, by the clock, counts as gone.")
     ] = 3.0
-    plant: Annotated[PlantTable, described("-", "The robot.")] = PlantTable()
-    estimator: Annotated[EstimatorTable, described("-", "The filter.")] = EstimatorTable()
-    law: Annotated[LawTable, described("-", "The control law.")] = LawTable()
-    link: Annotated[LinkTable, described("-", "The link between the two sides.")] = LinkTable()
+    plant: Annotated[
+        PlantTable, described("-", "The robot, and what the controller believes of it.")
+    ] = PlantTable()
+    estimator: Annotated[
+        EstimatorTable, described("-", "The filter in the loop, and its prior.")
+    ] = EstimatorTable()
+    law: Annotated[LawTable, described("-", "The control law's gains and limits.")] = LawTable()
+    link: Annotated[
+        LinkTable, described("-", "The way between the two sides: its delays, and more.")
+    ] = LinkTable()
     safety: Annotated[Safety, described("-", "The robot's own limits and failsafe.")] = Safety()
 
     @model_validator(mode="after")
@@ -111,7 +117,7 @@ class Scenario(Table):
 
     def fields(self, folder: Path | None = None) -> dict[str, Any]:
         """As in a file, without what is not set. Paths are relative to `folder`, or absolute."""
-        fields: dict[str, Any] = _plain(self.model_dump(by_alias=True, exclude_none=True))
+        fields: dict[str, Any] = plain(self.model_dump(by_alias=True, exclude_none=True))
         if folder is not None and self.link.replay is not None:
             fields["link"]["replay"] = os.path.relpath(self.link.replay, folder.resolve())
         return fields
@@ -123,10 +129,10 @@ class Scenario(Table):
         return tomlkit.dumps(self.fields(folder))
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """Without tuples and paths, which TOML does not have."""
     if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
+        return {key: plain(item) for key, item in value.items()}
     if isinstance(value, Path):
         return str(value)
-    return [_plain(item) for item in value] if isinstance(value, list | tuple) else value
+    return [plain(item) for item in value] if isinstance(value, list | tuple) else value

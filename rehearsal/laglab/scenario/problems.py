@@ -5,7 +5,7 @@ from difflib import get_close_matches
 
 from pydantic import ValidationError
 
-from laglab.scenario.keys import ANY, keys, places
+from laglab.scenario.keys import ANY, keys, rows
 from laglab.scenario.model import Scenario
 from laglab_gateway.values import wording
 
@@ -42,13 +42,13 @@ def _unknown(place: str) -> str:
     if near:
         return f"unknown key; did you mean {' or '.join(near)}?"
     pattern = _pattern(above)
-    known = [key.name for other, key in places() if other.rpartition(".")[0] == pattern]
+    known = [row.key.name for row in rows() if row.place.rpartition(".")[0] == pattern]
     return f"unknown key; known here: {', '.join(known)}"
 
 
 def _near(above: str, name: str, most: int = 3) -> list[str]:
     """Keys of a like name, those of the same table first."""
-    by_place = {place: key.name for place, key in places()}
+    by_place = {row.place: row.key.name for row in rows()}
     alike = get_close_matches(name, set(by_place.values()), most, LIKE)
     found = [place for each in alike for place, known in by_place.items() if known == each]
     pattern = _pattern(above)

@@ -16,13 +16,17 @@ def _known(name: str) -> str:
 
 
 def _comparable(name: str) -> str:
-    if name == "raw":
-        raise ValueError("must not be 'raw', which estimates nothing that could be compared")
+    if not ESTIMATORS[_known(name)].predicts:
+        raise ValueError(f"must not be {name!r}, which estimates nothing that could be compared")
     return name
 
 
+COMPARABLE = [name for name, kind in ESTIMATORS.items() if kind.predicts]
 EstimatorName = Annotated[
     str, AfterValidator(_known), WithJsonSchema({"type": "string", "enum": list(ESTIMATORS)})
+]
+ComparedName = Annotated[
+    str, AfterValidator(_comparable), WithJsonSchema({"type": "string", "enum": COMPARABLE})
 ]
 
 
@@ -33,7 +37,7 @@ class EstimatorTable(Table):
         EstimatorName, described("-", f"The filter in the loop: {', '.join(ESTIMATORS)}.")
     ] = StationConfig.estimator
     compare: Annotated[
-        tuple[Annotated[EstimatorName, AfterValidator(_comparable)], ...],
+        tuple[ComparedName, ...],
         described("-", "Filters that are run on the same record, to be compared with it."),
     ] = ()
     initial_covariance: Annotated[

@@ -39,7 +39,7 @@ class LinkTable(Table):
         Annotated[Path, AfterValidator(_readable)] | None,
         described(
             "-",
-            "A run's `link.csv`, relative to this file: what happened to its frames happens again, "
-            "and nothing else.",
+            "A run's `link.csv`, relative to the scenario's folder: what happened to its frames "
+            "happens again, and nothing else.",
         ),
     ] = None
