@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from enum import Enum, auto
 from typing import Annotated
 
-from laglab_gateway.values import NotNegative, Seconds, checked, described
+from laglab_gateway.values import Positive, Seconds, checked, described
 from laglab_protocol import NO_COMMAND, Command
 
 FASTEST = 1e6
@@ -41,10 +41,10 @@ class Safety:
     """The robot's own limits, and its failsafe."""
 
     v_limit: Annotated[
-        NotNegative | None, described("m/s", "The robot refuses a command that is faster.")
+        Positive | None, described("m/s", "The robot refuses a command that is faster.")
     ] = None
     omega_limit: Annotated[
-        NotNegative | None, described("rad/s", "The robot refuses a command that turns faster.")
+        Positive | None, described("rad/s", "The robot refuses a command that turns faster.")
     ] = None
     link_timeout: Annotated[
         Seconds, described("s", "Without a fresh command for so long the robot stops by itself.")

@@ -44,7 +44,7 @@ WRONG: list[tuple[Callable[..., object], str, list[object], str]] = [
     (Event, "at", [-1.0, INF], "must be "),
     (Event, "duration", [0.0, -1.0, NAN], "must be "),
     (Event, "direction", ["up"], "must be 'command', 'measurement' or 'both', not 'up'"),
-    (Safety, "v_limit", [-1.0, NAN], "must be "),
+    (Safety, "v_limit", [0.0, -1.0, NAN], "must be "),
     (Safety, "link_timeout", [-1.0, INF, None], "must be "),
     (gateway_config, "command_delay", [-1, 1.5, NAN, None], "must be "),
     (gateway_config, "measurement_delay", [-1], "must be 0 or more, not -1"),
@@ -67,7 +67,7 @@ def test_what_cannot_be(make: Callable[..., object], field: str, value: object, 
 
 
 def test_by_position_the_field_is_named_too() -> None:
-    with pytest.raises(ConfigError, match=r"^omega_limit: must be 0 or more, not -3"):
+    with pytest.raises(ConfigError, match=r"^omega_limit: must be above 0, not -3"):
         Safety(2.0, -3.0)
 
 

@@ -3,11 +3,12 @@
 import math
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 from pydantic import ValidationError
 
 from laglab.errors import ScenarioError
-from laglab.run.robot_side import gateway_config, robot_parameters
+from laglab.run.robot_side import gateway_config
 from laglab.run.station_side import station_config
 from laglab.run.trials import run_trial
 from laglab.scenario import Scenario, assignment, changed, load, shipped
@@ -82,8 +83,16 @@ def test_dotted_keys_reach_into_the_tables() -> None:
     assert [event.at for event in scenario.link.event] == [2.0]
     assert scenario.link.event[0].duration == math.inf
     assert (scenario.law.lambda_, scenario.start) == (5.0, (1.0, 2.0, 3.0))
-    assert robot_parameters(scenario).integration == "exact"
     assert changed(load("lab-radio"), OVERRIDES) == scenario
+
+
+def test_the_robot_moves_as_its_integration_says() -> None:
+    euler, exact = (
+        run_trial(load("fig6", {"duration": 1.0, "plant.integration": way}))
+        for way in ("euler", "exact")
+    )
+    difference = np.hypot(euler["x"][-1] - exact["x"][-1], euler["y"][-1] - exact["y"][-1])
+    assert 1e-4 < difference < 0.1
 
 
 def test_the_tables_of_a_list_are_counted() -> None:

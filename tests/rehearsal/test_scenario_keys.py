@@ -84,7 +84,10 @@ ESTIMATOR: Keys = {
 LAW: Keys = dict.fromkeys(
     ("gamma", "lambda", "h", "v_max", "omega_max", "goal_tolerance"), POSITIVE
 )
-SAFETY: Keys = dict.fromkeys(("v_limit", "omega_limit", "link_timeout", "ramp"), NOT_NEGATIVE)
+SAFETY: Keys = {
+    **dict.fromkeys(("v_limit", "omega_limit"), POSITIVE),
+    **dict.fromkeys(("link_timeout", "ramp"), NOT_NEGATIVE),
+}
 TOP: Keys = {
     "name": TEXT,
     "description": TEXT,

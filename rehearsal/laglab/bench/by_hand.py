@@ -119,8 +119,8 @@ def station_process(scenario: Scenario, address: str, _: Connection) -> None:
     control = controller.start()
     arrived: list[Measured] = []
     echoes: list[Echo] = []
-    tick = -1
-    while tick < scenario.must_end():
+    tick, last = -1, scenario.must_end()
+    while tick < last:
         message = link.recv_match(type=["LAGLAB_MEASUREMENT", "LAGLAB_TICK"], blocking=True)
         if message.get_type() == "LAGLAB_MEASUREMENT":
             z = np.array([message.x, message.y, message.theta])
