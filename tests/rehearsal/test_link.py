@@ -149,17 +149,23 @@ def test_what_was_really_run_holds_the_timeline(laglab: Laglab, tmp_path: Path) 
     assert json.loads((tmp_path / "first" / "summary.json").read_text())["scenario"] == "lab"
 
 
-def test_a_run_moves_with_what_it_refers_to(laglab: Laglab, tmp_path: Path) -> None:
-    inline = ("--duration", "1", "--transport", "inline")
-    assert laglab("run", "lab-radio", *inline, "--out", "runs/radio").returncode == 0
-    options = ("--timeline", "runs/radio/link.csv", *inline, "--out", "runs/again")
-    assert laglab("run", "lab", *options).returncode == 0
-    (tmp_path / "runs").rename(tmp_path / "moved")
-    assert laglab("run", "moved/again/scenario.toml", *inline, "--out", "third").returncode == 0
+def test_a_run_moves_with_what_it_refers_to(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str) -> None:
+        with pytest.raises(SystemExit) as ended:
+            main(["run", *arguments, "--duration", "1", "--transport", "inline"])
+        assert ended.value.code == 0
+
+    run("lab-radio", "--out", "runs/radio")
+    run("lab", "--timeline", "runs/radio/link.csv", "--out", "runs/again")
+    Path("runs").rename("moved")
+    run("moved/again/scenario.toml", "--out", "third")
     places = ("moved/radio", "moved/again", "third")
-    assert len({(tmp_path / place / "link.csv").read_bytes() for place in places}) == 1
-    third = (tmp_path / "third" / "scenario.toml").read_text()
-    assert 'replay = "../moved/radio/link.csv"' in third
+    assert len({Path(place, "link.csv").read_bytes() for place in places}) == 1
+    assert 'replay = "../moved/radio/link.csv"' in Path("third", "scenario.toml").read_text()
 
 
 def test_a_timeline_told_by_hand_beats_a_replay_of_the_file(
