@@ -4,7 +4,14 @@ A number in brackets, such as (28), is an equation of docs/theory.md, in this an
 """
 
 from laglab_control.angle import wrap
-from laglab_control.controller import INITIAL_VARIANCE, Control, Controller, StationConfig
+from laglab_control.controller import (
+    FAR,
+    INITIAL_VARIANCE,
+    Control,
+    Controller,
+    StationConfig,
+    is_far,
+)
 from laglab_control.errata import Erratum, PrintedController
 from laglab_control.errors import ConfigError, ControlError, StampError
 from laglab_control.estimators import (
@@ -30,6 +37,7 @@ from laglab_control.robot import RobotModel
 
 __all__ = [
     "ESTIMATORS",
+    "FAR",
     "INITIAL_VARIANCE",
     "Applied",
     "ConfigError",
@@ -59,6 +67,7 @@ __all__ = [
     "State",
     "StationConfig",
     "constant_delay",
+    "is_far",
     "replay",
     "wrap",
 ]

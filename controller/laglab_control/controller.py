@@ -1,7 +1,7 @@
 """Estimate, extrapolate, command: the remote station's part of a tick, without messages."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -14,14 +14,22 @@ from laglab_control.estimators.family import EstimatorKind, estimator_kind
 from laglab_control.estimators.interface import Estimator, Measured, State
 from laglab_control.flight import Echo, Flight, hear, send, take_off
 from laglab_control.laws.aicardi import STAND_STILL, Demand, Law, as_input
-from laglab_control.model import Vector, constant
+from laglab_control.limits import Ticks, check, covariance, finite_pose
+from laglab_control.model import Vector
 from laglab_control.motion import Way, joined
 from laglab_control.robot import RobotModel
 
 INITIAL_VARIANCE = 1e-4
 """P_0 = INITIAL_VARIANCE I by default [m^2, m^2, rad^2]."""
-DIVERGED = 1000.0
-"""[m] from the origin: no estimate of a robot that a run is about is ever there."""
+FAR = 1000.0
+"""[m] No run leads a robot further from the goal: nothing that one is about is ever there."""
+
+
+def is_far(pose: Iterable[float], goal: Iterable[float]) -> bool:
+    """Whether a pose [m, m, rad] is not finite, or further than FAR from the goal."""
+    x, y, theta = pose
+    x_goal, y_goal, _ = goal
+    return not (math.isfinite(theta) and math.hypot(x - x_goal, y - y_goal) <= FAR)
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,16 +44,21 @@ class StationConfig:
     law: Law = field(default_factory=Law)
     initial_estimate: ArrayLike = (0.0, 0.0, 0.0)
     initial_covariance: ArrayLike = field(default_factory=lambda: np.eye(3) * INITIAL_VARIANCE)
-    command_delay: int = 0
+    command_delay: Ticks = 0
     """n, until the stamps tell: n is estimated from the command that each measurement echoes, and
     the delay m of a measurement is read from its own stamp."""
 
     def __post_init__(self) -> None:
         estimator_kind(self.estimator)
-        for name, shape in (("initial_estimate", (3,)), ("initial_covariance", (3, 3))):
-            object.__setattr__(self, name, constant(getattr(self, name), shape, name))
-        if self.command_delay < 0:
-            raise ConfigError(f"command_delay must be 0 ticks or more, not {self.command_delay}")
+        check(self)
+        x = finite_pose(self.initial_estimate, "initial_estimate")
+        P = covariance(self.initial_covariance, 3, "initial_covariance")
+        if is_far(x.tolist(), self.law.goal):
+            raise ConfigError(
+                f"initial_estimate must be within {FAR:g} m of the goal, not {x.tolist()}"
+            )
+        object.__setattr__(self, "initial_estimate", x)
+        object.__setattr__(self, "initial_covariance", P)
 
 
 class Control(NamedTuple):
@@ -70,6 +83,12 @@ class Controller:
     def kind(self) -> EstimatorKind:
         """What the estimator is."""
         return estimator_kind(self.config.estimator)
+
+    @cached_property
+    def _began(self) -> list[float]:
+        """The initial estimate."""
+        pose: list[float] = np.asarray(self.config.initial_estimate).tolist()
+        return pose
 
     @cached_property
     def _estimator(self) -> Estimator[Any]:
@@ -104,10 +123,15 @@ class Controller:
         estimate, flight, drive = control
         flight, inputs = hear(self.config.model, flight, echoes)
         estimate = self._estimator.correct(estimate, measurements, inputs)
-        if estimate.x is None or diverged(estimate.x):
+        if estimate.x is None or self.diverged(estimate.x):
             return Control(estimate, flight, STAND_STILL)
         pose = self._at_arrival(estimate.x, flight, drive)
         return Control(estimate, flight, self.config.law.drive(pose, drive.at_goal))
+
+    def diverged(self, x: Vector) -> bool:
+        """Whether a pose estimate is not finite, or FAR from where it began and from the goal."""
+        pose = x.tolist()
+        return is_far(pose, self.config.law.goal) and is_far(pose, self._began)
 
     def warning(self, control: Control) -> str | None:
         """The estimator's."""
@@ -121,9 +145,3 @@ class Controller:
         """(29): where the robot will be when the command that is now made comes into force."""
         pose = Way(*x.tolist())
         return joined(pose, flight.ahead) if self.kind.predicts else pose
-
-
-def diverged(x: Vector) -> bool:
-    """Whether a pose estimate is not finite, or further than DIVERGED from the origin."""
-    x_, y, theta = x.tolist()
-    return not (math.isfinite(theta) and math.hypot(x_, y) <= DIVERGED)

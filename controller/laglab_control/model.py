@@ -93,7 +93,10 @@ def symmetric(P: Matrix) -> Matrix:
 
 def constant(values: ArrayLike, shape: tuple[int, ...], name: str) -> NDArray[np.float64]:
     """A read-only double array of that shape. Raises ConfigError, naming it, for any other."""
-    array = np.array(values, dtype=np.float64)
+    try:
+        array = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ConfigError(f"{name} must be numbers of shape {shape}, not {values!r}") from None
     if array.shape != shape:
         raise ConfigError(f"{name} must have shape {shape}, not {array.shape}")
     array.setflags(write=False)

@@ -6,7 +6,8 @@ from functools import cached_property
 import numpy as np
 
 from laglab_control.angle import direction, wrap
-from laglab_control.model import Matrix, Vector, constant, identity
+from laglab_control.limits import Positive, check, covariance
+from laglab_control.model import Matrix, Vector, identity
 from laglab_control.motion import Motion, Way, moved
 
 
@@ -16,17 +17,19 @@ class RobotModel:
 
     `Q` (2, 2) is the covariance of the wheel speeds' noise [w_L, w_R] [(rad/s)^2], `R` (3, 3) that
     of the measurement [m^2, m^2, rad^2]. The defaults are the paper's (30). theta is not wrapped.
+    Raises ConfigError, naming the field, when one cannot be.
     """
 
-    sample_time: float = 0.01
-    wheel_radius: float = 0.05
-    track: float = 0.6
+    sample_time: Positive = 0.01
+    wheel_radius: Positive = 0.05
+    track: Positive = 0.6
     Q: Matrix = field(default_factory=lambda: np.diag([0.01, 0.01]))
     R: Matrix = field(default_factory=lambda: np.diag([0.01, 0.01, 0.018]))
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "Q", constant(self.Q, (2, 2), "Q"))
-        object.__setattr__(self, "R", constant(self.R, (3, 3), "R"))
+        check(self)
+        object.__setattr__(self, "Q", covariance(self.Q, 2, "Q"))
+        object.__setattr__(self, "R", covariance(self.R, 3, "R"))
 
     def f(self, x: Vector, u: Vector) -> Vector:
         """(3)."""

@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from laglab_control import Control, Controller, State, StationConfig
-from laglab_control.controller import diverged
+from laglab_control import Control, Controller, State, StationConfig, is_far
 from laglab_control.flight import MEMORY
 from laglab_protocol import (
     STATION_COMPONENT,
@@ -215,20 +214,28 @@ class Station:
         for measurement in measurements:
             self._joining = observe(self._joining, measurement, self._config.model)
         if self._joining.known:
-            self._take_over(self._joining)
-            self._step(tick, [])
+            self._take_over(tick, self._joining)
         else:
-            self._tick = tick
-            self._answer = [Command(0.0, 0.0, tick, *self._peer, estimates=0)]
+            self._stand_still(tick)
 
-    def _take_over(self, rest: Rest) -> None:
+    def _stand_still(self, tick: int) -> None:
+        self._tick = tick
+        self._answer = [Command(0.0, 0.0, tick, *self._peer, estimates=0)]
+
+    def _take_over(self, tick: int, rest: Rest) -> None:
         """From the pose at which the robot stands, with nothing but standstill in flight."""
         x, P = prior(rest, self._config.model)
+        if is_far(x.tolist(), self._config.law.goal):
+            self._stand_still(tick)
+            self._outcome = End(tick, EndReason.DIVERGED)
+            self._answer.insert(0, self._outcome)  # the command closes the answer
+            return
         config = replace(self._config, initial_estimate=x, initial_covariance=P)
         self._controller = self._make_controller(config)
         self._control = self._controller.start()
         self._first = self._tick = rest.tick
         self._joining = None
+        self._step(tick, [])
 
     @property
     def _peer(self) -> tuple[int, int]:
@@ -265,7 +272,7 @@ class Station:
         estimates = _estimate(tick, control.estimate)
         v, omega, _ = control.drive
         command = Command(v, omega, tick, *self._peer, estimates=len(estimates))
-        if control.estimate.x is not None and diverged(control.estimate.x):
+        if control.estimate.x is not None and self._controller.diverged(control.estimate.x):
             self._outcome = End(tick, EndReason.DIVERGED)
             return [*estimates, self._outcome, command]  # the command closes the answer
         return [*estimates, command]

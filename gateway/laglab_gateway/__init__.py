@@ -3,6 +3,7 @@
 from laglab_gateway.core import Gateway
 from laglab_gateway.drive import Safety
 from laglab_gateway.errors import (
+    ConfigError,
     GatewayError,
     PlantSilentError,
     StationSilentError,
@@ -57,6 +58,7 @@ __all__ = [
     "Burst",
     "Channel",
     "ClockReport",
+    "ConfigError",
     "DelayReport",
     "Direction",
     "DirectionReport",

@@ -11,8 +11,9 @@ every mode to DRIVING.
 import math
 from dataclasses import dataclass, replace
 from enum import Enum, auto
+from typing import Annotated
 
-from laglab_gateway.link.impairments import STRICT, NotNegative, Seconds
+from laglab_gateway.values import Positive, Seconds, checked, described
 from laglab_protocol import NO_COMMAND, Command
 
 FASTEST = 1e6
@@ -35,18 +36,20 @@ class Rejection(Enum):
     STALE = "stale"
 
 
-@dataclass(frozen=True)
+@checked
 class Safety:
-    """Limits of the robot [m/s], [rad/s] (None: none), and the failsafe's times [s]."""
+    """The robot's own limits, and its failsafe."""
 
-    __pydantic_config__ = STRICT
-
-    v_limit: NotNegative | None = None
-    omega_limit: NotNegative | None = None
-    link_timeout: Seconds = 0.5
-    """Without a fresh command for this long the robot stops."""
-    ramp: Seconds = 0.5
-    """From the failsafe's start to standstill."""
+    v_limit: Annotated[
+        Positive | None, described("m/s", "The robot refuses a command that is faster.")
+    ] = None
+    omega_limit: Annotated[
+        Positive | None, described("rad/s", "The robot refuses a command that turns faster.")
+    ] = None
+    link_timeout: Annotated[
+        Seconds, described("s", "Without a fresh command for so long the robot stops by itself.")
+    ] = 0.5
+    ramp: Annotated[Seconds, described("s", "How long it then takes to a standstill.")] = 0.5
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,10 @@ class GatewayError(Exception):
     """Base of every error the gateway raises; the message says what to do."""
 
 
+class ConfigError(GatewayError, ValueError):
+    """A value that the robot's side is given is not as it must be; the message names it."""
+
+
 class StationSilentError(GatewayError):
     """The remote station stopped answering (or never spoke)."""
 

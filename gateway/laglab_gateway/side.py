@@ -9,7 +9,6 @@ import math
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from laglab_gateway.drive import Drive, Safety, follow, rejection
@@ -20,6 +19,7 @@ from laglab_gateway.link.timeline import Direction
 from laglab_gateway.record.audit import Audit, DirectionAudit
 from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import RobotState, Services
+from laglab_gateway.values import Positive, Ticks, checked
 from laglab_protocol import (
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
@@ -41,18 +41,21 @@ from laglab_protocol import (
 )
 
 
-@dataclass(frozen=True)
+@checked
 class GatewayConfig:
-    """Delays n and m [ticks], the tick that ends the run (infinite: none does), Ts [s]."""
+    """Delays n and m [ticks], the tick that ends the run (None: none does), Ts [s], the failsafe;
+    the robot's geometry [m], for the station to compare, where it is known.
 
-    command_delay: int
-    measurement_delay: int
-    last_tick: float
-    sample_time: float
-    safety: Safety = field(default_factory=Safety)
-    wheel_radius: float = math.nan
-    """Of the robot [m], for the station to compare; NaN: not known."""
-    track: float = math.nan
+    Raises ConfigError, naming the field, when one cannot be.
+    """
+
+    command_delay: Ticks
+    measurement_delay: Ticks
+    last_tick: Ticks | None
+    sample_time: Positive
+    safety: Safety = Safety()
+    wheel_radius: Positive | None = None
+    track: Positive | None = None
 
     @property
     def settings(self) -> Settings:
@@ -60,8 +63,8 @@ class GatewayConfig:
         v_limit, omega_limit = self.safety.v_limit, self.safety.omega_limit
         return Settings(
             sample_time=self.sample_time,
-            wheel_radius=self.wheel_radius,
-            track=self.track,
+            wheel_radius=self.wheel_radius or math.nan,
+            track=self.track or math.nan,
             v_max=math.inf if v_limit is None else v_limit,
             omega_max=math.inf if omega_limit is None else omega_limit,
             command_delay=self.command_delay,
@@ -277,7 +280,8 @@ class RobotSide(ABC):
         """How the run ends at this tick; None when it goes on."""
         if self.station_end is not None:
             return Outcome(reason_of(self.station_end), self.tick)
-        if self.elapsed >= self._config.last_tick:
+        last = self._config.last_tick
+        if last is not None and self.elapsed >= last:
             return Outcome(EndReason.COMPLETED, self.tick)
         return None
 

@@ -14,6 +14,7 @@ from laglab.commands import (
     protocol,
     replay,
     run,
+    scenario,
     scenarios,
     serial,
     sides,
@@ -27,6 +28,7 @@ app = group("A rehearsal rig for robots controlled across a network.")
 app.command("run")(run.run)
 app.command("replay")(replay.replay)
 app.command("scenarios")(scenarios.scenarios)
+app.command("scenario")(scenario.scenario)
 app.command("compare")(compare.compare)
 app.command("consistency")(consistency.consistency)
 app.command("errata")(errata.errata)

@@ -78,7 +78,8 @@ def _whole(ending: Ending, done: Run) -> Run:
 def _in_memory(done: Run) -> Run:
     assert done.directory is not None
     shadows = {
-        name: read_shadow(shadow_file(done.directory, name)) for name in done.scenario.compare
+        name: read_shadow(shadow_file(done.directory, name))
+        for name in done.scenario.estimator.compare
     }
     kept = Kept(done.trace, done.link, done.timing, shadows)
     return Run(done.scenario, done.summary, None, kept)

@@ -1,22 +1,29 @@
 """Progress of long work, on standard error."""
 
-import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+)
 
 from laglab.scenario import Scenario
 
 
 def progress_bar() -> Progress:
-    """Ticks done of ticks to do."""
+    """Ticks done of ticks to do, if that is known."""
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
-        TaskProgressColumn(),
-        TextColumn("tick {task.completed}/{task.total}"),
+        TaskProgressColumn(text_format_no_percentage=""),
+        TextColumn("tick"),
+        MofNCompleteColumn(),
         TimeElapsedColumn(),
         console=Console(stderr=True),
     )
@@ -28,7 +35,6 @@ def progress_of(scenario: Scenario, shown: bool = True) -> Iterator[Callable[[in
     if not shown:
         yield lambda _: None
         return
-    total = None if math.isinf(scenario.last_tick) else scenario.last_tick
     with progress_bar() as bar:
-        task = bar.add_task(scenario.name, total=total)
+        task = bar.add_task(scenario.name, total=scenario.last_tick)
         yield lambda tick: bar.update(task, completed=tick)

@@ -169,11 +169,29 @@ def test_an_estimate_that_is_not_finite_stops_the_robot_and_ends_the_run(estimat
     assert robot.station.closed
 
 
-@pytest.mark.parametrize(("x", "diverged"), [(999.0, False), (1001.0, True), (-1001.0, True)])
-def test_beyond_a_kilometre_is_diverged(x, diverged):
-    robot = Robot(make("raw"))
-    robot.tick(0, (0, (x, 0.0, 0.0)))
+GOAL = (5000.0, 5000.0, 0.0)
+BEGIN = (4100.0, 5000.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("x", "diverged"),
+    [(5999.0, False), (6001.0, True), (3101.0, False), (3099.0, True), (0.0, True)],
+)
+def test_a_kilometre_from_both_goal_and_first_estimate_is_diverged(x, diverged):
+    config = StationConfig(estimator="raw", law=Law(goal=GOAL), initial_estimate=BEGIN)
+    robot = Robot(Station(config))
+    robot.tick(0, (0, (x, 5000.0, 0.0)))
     assert (robot.station.outcome is not None) is diverged
+
+
+@pytest.mark.parametrize("there", [(2000.0, 0.0, 0.0), (np.nan, 0.0, 0.0)])
+def test_a_robot_under_way_that_stands_where_no_run_leads_is_not_taken_over(there):
+    robot = Robot(make())
+    for tick in range(5000, 5099):
+        assert robot.tick(tick, (tick, there)) == [Command(0, 0, tick, 1, 1, 0)]
+    end = End(5099, EndReason.DIVERGED)
+    assert robot.tick(5099, (5099, there)) == [end, Command(0, 0, 5099, 1, 1, 0)]
+    assert robot.station.outcome == end
 
 
 def test_the_robots_end_is_answered_once_with_the_same():
@@ -195,7 +213,7 @@ def test_heartbeat_says_ground_station():
     ("config", "said"),
     [
         ({"estimator": "best"}, "no estimator 'best': take one of raw, "),
-        ({"command_delay": -1}, "command_delay must be 0 ticks or more, not -1"),
+        ({"command_delay": -1}, "command_delay must be a whole number of 0 or more, not -1"),
         ({"initial_estimate": (0, 0)}, r"initial_estimate must have shape \(3,\), not \(2,\)"),
         ({"initial_covariance": 1.0}, r"initial_covariance must have shape \(3, 3\), not \(\)"),
     ],

@@ -232,8 +232,12 @@ def test_a_controller_started_again_takes_over(
     assert np.abs(trace["theta"][-100:]).max() < 0.05
 
 
-def test_ctrl_c_ends_cleanly_with_results_written(start: Start, tmp_path: Path) -> None:
-    run = start("run", "fig6", "--duration", "3600", "--out", "run")
+@pytest.mark.parametrize("transport", ["inline", "udp"])
+def test_a_run_without_end_lasts_until_ctrl_c_and_its_results_are_written(
+    start: Start, tmp_path: Path, transport: str
+) -> None:
+    options = ("--duration", "inf", "--transport", transport, "--out", "run")
+    run = start("run", "fig6", *options)
     wait_for_rows(tmp_path / "run" / "trace.csv", 50)
     run.send_signal(signal.SIGINT)
     _, errors = run.communicate(timeout=20)
@@ -242,6 +246,19 @@ def test_ctrl_c_ends_cleanly_with_results_written(start: Start, tmp_path: Path) 
     assert_whole(tmp_path / "run" / "trace.csv")
     summary = json.loads((tmp_path / "run" / "summary.json").read_text())
     assert summary["verdict"].startswith("interrupted at tick")
+    assert load(str(tmp_path / "run" / "scenario.toml")).last_tick is None
+
+
+def test_the_two_sides_of_a_run_without_end_meet_too(
+    start: Start, listening_port: ListeningPort, tmp_path: Path
+) -> None:
+    options = ("fig6", "--duration", "inf")
+    gateway = start("gateway", *options, "--endpoint", "udpin://127.0.0.1:0", "--out", "run")
+    link = ("--endpoint", f"udpout://127.0.0.1:{listening_port(gateway)}")
+    station = start("controller", *options, *link)
+    wait_for_rows(tmp_path / "run" / "trace.csv", 50)
+    gateway.send_signal(signal.SIGINT)
+    assert gateway.wait(10) == station.wait(10) == 130
 
 
 @pytest.mark.parametrize("transport", ["inline", "udp", "serial"])

@@ -11,6 +11,7 @@ import pytest
 
 from laglab.command import main
 from laglab_gateway import read_trace
+from laglab_gateway.link.log import LINK_HEADER
 from laglab_protocol import Statustext, read_tlog
 
 Laglab = Callable[..., subprocess.CompletedProcess[str]]
@@ -106,13 +107,19 @@ def test_commands_out_of_the_robots_limits_are_refused_and_counted(
 
 
 BAD_TIMELINES = {
-    "nothing.toml": (None, "nothing.toml"),
-    "syntax.toml": ("at = ", "not a readable TOML file"),
+    "nothing.toml": (None, "nothing.toml: No such file"),
+    "syntax.toml": ("at = ", "syntax.toml: neither TOML (Invalid value"),
+    "picture.png": ("\0\1", "picture.png: neither TOML (Invalid statement"),
+    "notes.txt": ("it rained", "notes.txt: neither TOML (Expected '='"),
     "other.toml": ("loss = 1.0", "list of [[event]]"),
     "field.toml": ("[[event]]\nat = -1.0\nduration = 1\nlink = {}", "link.event.0.at"),
-    "unknown.toml": ("[[event]]\nat = 1\nduration = 1\nlink = {fog = 1}", "fog: unknown key"),
+    "unknown.toml": (
+        "[[event]]\nat = 1\nduration = 1\nlink = {fog = 1}",
+        "link.event.0.link.fog: unknown key",
+    ),
     "nothing.csv": (None, "nothing.csv"),
     "other.csv": ("a,b\n1,2\n", "not a readable link log"),
+    "long.csv": ('"' + "x" * 200_000, "not a readable link log"),
 }
 
 
@@ -140,3 +147,34 @@ def test_what_was_really_run_holds_the_timeline(laglab: Laglab, tmp_path: Path) 
     traces = [(tmp_path / name / "trace.csv").read_bytes() for name in ("first", "again")]
     assert traces[0] == traces[1]
     assert json.loads((tmp_path / "first" / "summary.json").read_text())["scenario"] == "lab"
+
+
+def test_a_run_moves_with_what_it_refers_to(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+
+    def run(*arguments: str) -> None:
+        with pytest.raises(SystemExit) as ended:
+            main(["run", *arguments, "--duration", "1", "--transport", "inline"])
+        assert ended.value.code == 0
+
+    run("lab-radio", "--out", "runs/radio")
+    run("lab", "--timeline", "runs/radio/link.csv", "--out", "runs/again")
+    Path("runs").rename("moved")
+    run("moved/again/scenario.toml", "--out", "third")
+    places = ("moved/radio", "moved/again", "third")
+    assert len({Path(place, "link.csv").read_bytes() for place in places}) == 1
+    assert 'replay = "../moved/radio/link.csv"' in Path("third", "scenario.toml").read_text()
+
+
+def test_a_timeline_told_by_hand_beats_a_replay_of_the_file(
+    rehearsed: Rehearsed, tmp_path: Path
+) -> None:
+    (tmp_path / "link.csv").write_text(LINK_HEADER)
+    (tmp_path / "outage.toml").write_text("[[event]]\nlink = { loss = 1.0 }\n")
+    own = tmp_path / "own.toml"
+    own.write_text("link.replay = 'link.csv'\nduration = 0.5\n")
+    timeline = ("--timeline", str(tmp_path / "outage.toml"))
+    assert rehearsed(str(own))["link"]["measurement"]["arrived"] == 31
+    assert rehearsed(str(own), *timeline)["link"]["measurement"]["arrived"] == 0

@@ -23,6 +23,10 @@ def test_converges(rehearsed: Rehearsed, name: str) -> None:
     assert summary["verdict"].startswith("converged")
 
 
+def test_a_goal_far_from_the_origin_is_one_like_any_other(rehearsed: Rehearsed) -> None:
+    assert rehearsed("lab", "--goal", "5000,5000,0", "--start", "4997,4997,0")["converged"]
+
+
 def test_fig5_reaches_the_goal_but_keeps_turning(rehearsed: Rehearsed) -> None:
     summary = rehearsed("fig5")
     assert not summary["converged"]
@@ -33,7 +37,7 @@ def test_fig5_reaches_the_goal_but_keeps_turning(rehearsed: Rehearsed) -> None:
 
 def test_fig5_without_limits_diverges(rehearsed: Rehearsed, tmp_path: Path) -> None:
     own = tmp_path / "unlimited.toml"
-    own.write_text('estimator = "raw"\n')
+    own.write_text('estimator.kind = "raw"\n')
     rehearsed(str(own), exit_code=3)
     assert np.abs(read_trace(tmp_path / "run" / "trace.csv")["v"]).max() > 100
 

@@ -23,24 +23,32 @@ BLOCKS = re.findall(r"^```python\n(.*?)^```", PAGE.read_text(encoding="utf-8"), 
 def test_import_is_light() -> None:
     heavy = "numpy", "pydantic", "matplotlib", "serial", "pymavlink", "typer", "fmpy", "pandas"
     script = f"import sys, laglab; print([name for name in {heavy} if name in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
     assert done.stdout == "[]\n"
 
 
 def test_the_mathematics_load_numpy_and_little_else() -> None:
     heavy = "pydantic", "matplotlib", "serial", "pymavlink", "msgspec", "fastcrc", "hdrh", "typer"
     script = f"import sys, laglab_control; print([n for n in {heavy} if n in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
     assert done.stdout == "[]\n"
 
 
 def test_a_plain_script_needs_no_guard_and_prints_nothing_of_ours(tmp_path: Path) -> None:
     """The blocks of the page one after the other, then runs over UDP and a pty."""
     script = tmp_path / "plain.py"
-    more = 'import os\nfor transport in ("udp", "serial"):\n    laglab.run("fig6", {"duration": 0.5}, transport)\n'
+    more = 'for way in ("udp", "serial"):\n    laglab.run("fig6", {"duration": 0.5}, way)\n'
     script.write_text("\n".join([*BLOCKS, "print('the end of the page')", more]), encoding="utf-8")
     done = subprocess.run(
-        [sys.executable, "-W", "error", script], cwd=tmp_path, capture_output=True, text=True, check=False
+        [sys.executable, "-W", "error", script],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""
@@ -57,7 +65,9 @@ def test_a_notebook(tmp_path: Path) -> None:
         notebook, timeout=60, kernel_name="python3", resources={"metadata": {"path": str(tmp_path)}}
     )
     client.execute()
-    streams = [out for cell in notebook.cells for out in cell.outputs if out.get("name") == "stderr"]
+    streams = [
+        out for cell in notebook.cells for out in cell.outputs if out.get("name") == "stderr"
+    ]
     assert streams == []
     assert "image/png" in notebook.cells[-1].outputs[0]["data"]
 

@@ -67,7 +67,7 @@ def test_a_log_alone_is_enough_with_a_scenario_for_model_and_prior(run, tmp_path
     ("arguments", "said"),
     [
         (["missing.tlog", "--estimator", "popf", "--scenario", "lab"], "missing.tlog"),
-        (["{log}", "--estimator", "best"], "--estimator: 'best' is not one of raw, ekf"),
+        (["{log}", "--estimator", "best"], "estimator.kind: must be one of raw, ekf"),
         (["{empty}", "--estimator", "popf", "--scenario", "lab"], "no tick of a robot in it"),
     ],
 )

@@ -12,10 +12,13 @@ WRONG = [
     (["run", "fig6", "-m", "-3"], "measurement_delay"),
     (["run", "fig6", "-m", "some"], "'-m'"),
     (["run", "fig6", "--start", "1,2"], "start"),
-    (["run", "fig6", "--start", "1,2,east"], "start: '1,2,east' is not X,Y,THETA"),
+    (
+        ["run", "fig6", "--start", "1,2,east"],
+        "start: must be three finite numbers, x, y and theta, not '1,2,east'",
+    ),
     (["run", "fig6", "--goal", "nan,0,0"], "goal"),
     (["run", "fig6", "--initial-estimate", "somewhere"], "initial_estimate"),
-    (["run", "fig6", "--estimator", "best"], "estimator: 'best' is not one of raw, ekf"),
+    (["run", "fig6", "--estimator", "best"], "estimator.kind: must be one of raw, ekf"),
     (["run", "fig6", "--p0", "-1"], "initial_covariance"),
     (["run", "fig6", "--v-max", "0"], "v_max"),
     (["run", "fig6", "--omega-max", "inf"], "omega_max"),
@@ -26,6 +29,11 @@ WRONG = [
     (["run", "fig6", "--seed", "-1"], "seed"),
     (["run", "fig6", "--transport", "pigeon"], "'--transport'"),
     (["run", "fig6", "--colour", "red"], "--colour"),
+    (["run", "fig6", "--set", "seed"], "--set seed: must be KEY=VALUE"),
+    (["run", "fig6", "--set", "start=[1,"], "--set start=[1,: '[1,' is no TOML value"),
+    (["run", "fig6", "--set", "comand_delay=1"], "fig6: comand_delay: unknown key; did you mean"),
+    (["run", "fig6", "--set", "start.x=1"], "fig6: start.x: must be the number of an element"),
+    (["run", "fig6", "--set", "seed=1", "--set", "seed.x=1"], "fig6: seed: must be a table to"),
     (["gateway", "fig6", "--endpoint", "smoke://signals"], "smoke"),
     (["controller", "fig6", "--endpoint", "serial:///dev/ttyNONE9:57600"], "/dev/ttyNONE9"),
     (["run", "lab", "--transport", "inline", "--plant", "pty://p"], "--plant: a real robot does"),
@@ -54,15 +62,52 @@ def test_one_line_names_the_field(
 
 
 BROKEN_FILES = {
-    "colour = 'red'": "colour: unknown key",
-    "command_delay = -1": "command_delay",
-    "command_delay = 1.5": "command_delay",
-    "start = [1.0, 2.0]": "start",
-    "start = 'here'": "start",
-    "noise = 'perhaps'": "noise",
+    "colour = 'red'": "colour: unknown key; known here: name, description, start",
+    "command_delay = 3": "command_delay: unknown key; did you mean link.command_delay",
+    "link.comand_delay = 3": "link.comand_delay: unknown key; did you mean link.command_delay",
+    "lnk.command_delay = 3": "lnk: unknown key; did you mean link",
+    "link.command.fog = 1": "link.command.fog: unknown key; known here: loss, reorder",
+    "link.command.burst.loss_god = 1": "link.command.burst.loss_god: unknown key; did you mean "
+    "link.command.burst.loss_good",
+    "link = 3": "link: must be a table, not 3",
+    "link.command = 0.1": "link.command: must be a table, not 0.1",
+    "link.command_delay = -1": "link.command_delay: must be 0 or more, not -1",
+    "link.command_delay = 1.5": "link.command_delay: must be a whole number, not 1.5",
+    "link.command_delay = '3'": "link.command_delay: must be a whole number, not '3'",
+    "link.command.loss = 7": "link.command.loss: must be 1 or less, not 7",
+    "link.event = [{at = 1.0}, {at = -1.0}]": "link.event.1.at: must be 0 or more, not -1.0",
+    "link.event = {at = 1.0}": "link.event: must be a list, not {'at': 1.0}",
+    "link.replay = 'none.csv'": "none.csv is not a readable link log",
+    "link.command.outages = [[1.0]]": "link.command.outages: must be a list of [start, duration]",
+    "start = [1.0, 2.0]": "start: must be three finite numbers, x, y and theta, not [1.0, 2.0]",
+    "start = [1.0, 2.0, '3']": "start: must be three finite numbers",
+    "start = 'here'": "start: must be three finite numbers, x, y and theta, not 'here'",
+    "start = { x = 1.0 }": "start: must be three finite numbers",
+    "goal = [2000.0, 0.0, 0.0]": "start: must be within 1000 m of the goal, not [-3.0, -3.0, 0.0]",
+    "noise = 'perhaps'": "noise: must be true or false, not 'perhaps'",
+    "noise = 1": "noise: must be true or false, not 1",
+    "seed = { first = 1 }": "seed: must be a whole number, not {'first': 1}",
+    "seed = 2147483648": "seed: must be below 2147483648, not 2147483648",
+    "seed = true": "seed: must be a whole number, not True",
+    "seed = 2020-01-01": "seed: must be a whole number, not datetime.date(2020, 1, 1)",
+    "speed = nan": "speed: must be a finite number, not nan",
+    "duration = nan": "duration: must be above 0, not nan",
+    "duration = 1e9": "duration: must be 4294967295 ticks or less, not 1e+11",
+    "name = 3": "name: must be text, not 3",
+    "law.lambda = 0.0": "law.lambda: must be above 0, not 0.0",
+    "law.v_max = inf": "law.v_max: must be a finite number, not inf",
+    "pace = 'slow'": "pace: must be 'lockstep' or 'realtime', not 'slow'",
     "not toml at all": "not a readable TOML file",
-    "compare = ['raw']": "compare",
-    "measurement_variance = [0.0, 0.1, 0.1]": "measurement_variance",
+    "estimator.kind = 'best'": "estimator.kind: must be one of raw, ekf, popf",
+    "estimator.initial_estimate = 'here'": "estimator.initial_estimate: must be 'start', 'drawn' "
+    "or three finite numbers, x, y and theta, not 'here'",
+    "estimator.compare = ['raw']": "estimator.compare: must not be 'raw'",
+    "estimator.compare = 'ekf'": "estimator.compare: must be a list, not 'ekf'",
+    "plant.measurement_variance = [0.0, 0.1, 0.1]": "plant.measurement_variance: must be three "
+    "variances above 0, of x, y and theta, not [0.0, 0.1, 0.1]",
+    "safety.ramp = -1.0": "safety.ramp: must be 0 or more, not -1.0",
+    f"seed = 1{'0' * 5000}": "not a readable TOML file",
+    f"name = [{'1,' * 5000}]": "name: must be text, not [1, 1, 1",
 }
 
 
@@ -76,7 +121,8 @@ def test_a_bad_scenario_file_names_file_and_field(
         main(["run", str(path), "--out", str(tmp_path / "out")])
     error = capsys.readouterr().err
     assert ended.value.code == 2
-    assert "own.toml" in error
+    assert error.startswith(f"laglab: {path}: ")
     assert BROKEN_FILES[text] in error
     assert len(error.splitlines()) == 1
+    assert len(error) < 400
     assert not (tmp_path / "out").exists()

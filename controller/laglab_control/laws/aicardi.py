@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from laglab_control.angle import wrap
+from laglab_control.limits import Positive, check, finite_pose
 from laglab_control.model import Vector
 
 
@@ -28,15 +29,20 @@ class Law:
 
     `v_max` [m/s] and `omega_max` [rad/s] clamp the answer; `goal_tolerance` [m] is the distance
     inside which the robot only turns. None switches each of them off, as in the paper.
+    Raises ConfigError, naming the field, when one cannot be.
     """
 
     goal: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    lambda_: float = 6.0
-    h: float = 1.0
-    gamma: float = 3.0
-    v_max: float | None = None
-    omega_max: float | None = None
-    goal_tolerance: float | None = None
+    lambda_: Positive = 6.0
+    h: Positive = 1.0
+    gamma: Positive = 3.0
+    v_max: Positive | None = None
+    omega_max: Positive | None = None
+    goal_tolerance: Positive | None = None
+
+    def __post_init__(self) -> None:
+        check(self)
+        finite_pose(self.goal, "goal")
 
     def drive(self, pose: Iterable[float], at_goal: bool) -> Demand:
         """The command at a finite `pose` (3,). `at_goal` is the last answer's, False at first."""

@@ -52,7 +52,7 @@ def read_link_log(path: Path, direction: Direction) -> list[LinkRow]:
         with path.open(newline="") as file:
             header, *rows = csv.reader(file)
             read = [_row(*cells) for cells in rows]
-    except (OSError, ValueError, TypeError) as error:
+    except (OSError, ValueError, TypeError, csv.Error) as error:
         raise TimelineError(f"{path} is not a readable link log: {error}") from error
     if header != list(LinkRow._fields):
         raise TimelineError(f"{path} is not a link log: expected the columns {LINK_HEADER.strip()}")

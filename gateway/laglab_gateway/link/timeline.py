@@ -1,26 +1,32 @@
 """Impairments that come and go at given times."""
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
-from laglab_gateway.link.impairments import STRICT, Impairments, Seconds
+from laglab_gateway.link.impairments import IDEAL, Impairments
+from laglab_gateway.values import Duration, Seconds, checked, described
 
 ROUNDING = 1e-9
 
 Direction = Literal["command", "measurement"]
 
 
-@dataclass(frozen=True)
+@checked
 class Event:
-    """From `at` [s] on, for `duration` [s], `link` stands in for the link's own impairments."""
+    """From `at` on, for `duration`, `link` stands in for the link's own impairments."""
 
-    __pydantic_config__ = STRICT
-
-    at: Seconds
-    duration: Seconds
-    link: Impairments
-    direction: Direction | Literal["both"] = "both"
+    at: Annotated[Seconds, described("s", "When it begins.")] = 0.0
+    duration: Annotated[
+        Duration, described("s", "How long it lasts; `inf`: to the end of the run.")
+    ] = math.inf
+    link: Annotated[
+        Impairments, described("-", "What the link does meanwhile, instead of what it does else.")
+    ] = IDEAL
+    direction: Annotated[
+        Literal[Direction, "both"],
+        described("-", "What it concerns: `command`, `measurement` or `both`."),
+    ] = "both"
 
     def concerns(self, direction: Direction) -> bool:
         """Whether it changes this direction of the link."""

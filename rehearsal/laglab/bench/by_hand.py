@@ -69,7 +69,7 @@ def robot_process(order: Order, tell: Tell) -> None:
         link.recv_match(type="HEARTBEAT", blocking=True)
         began = perf_counter()
         _drive(loop, link, fmu, references, trace)
-        tell(Progress(int(loop.last_tick), perf_counter() - began))
+        tell(Progress(loop.last_tick, perf_counter() - began))
 
 
 def _drive(loop: Loop, link: Any, fmu: FMU2Slave, references: dict[str, int], trace: Any) -> None:

@@ -31,11 +31,11 @@ def loop_scenario(estimator: str, ticks: int) -> Scenario:
     return load(
         "lab",
         {
-            "estimator": estimator,
+            "estimator.kind": estimator,
             "duration": ticks * SAMPLE_TIME,
             "sample_time": SAMPLE_TIME,
-            "initial_covariance": INITIAL_VARIANCE,
-            "initial_estimate": "start",
+            "estimator.initial_covariance": INITIAL_VARIANCE,
+            "estimator.initial_estimate": "start",
         },
     )
 
@@ -43,9 +43,9 @@ def loop_scenario(estimator: str, ticks: int) -> Scenario:
 def loop_of(scenario: Scenario) -> Loop:
     """The same loop."""
     return Loop(
-        scenario.command_delay,
-        scenario.measurement_delay,
-        scenario.last_tick,
+        scenario.link.command_delay,
+        scenario.link.measurement_delay,
+        scenario.must_end(),
         robot_parameters(scenario),
         station_config(scenario),
     )
@@ -53,7 +53,7 @@ def loop_of(scenario: Scenario) -> Loop:
 
 def seconds_per_tick(transport: Transport, scenario: Scenario, directory: Path) -> float:
     """Wall time [s] of one tick, as `laglab run` runs it, from its first tick to its last."""
-    return _run(transport, scenario, directory).loop_seconds / scenario.last_tick
+    return _run(transport, scenario, directory).loop_seconds / scenario.must_end()
 
 
 def lateness(seconds: float, directory: Path) -> TimingReport:

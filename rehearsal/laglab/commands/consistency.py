@@ -43,7 +43,7 @@ def consistency(
     with progress_bar() as bar:
         runs = samples(scenario, names, seeds, workers or os.cpu_count() or 1)
         got = list(bar.track(runs, total=seeds, description="seeds"))
-    m = scenario.measurement_delay
+    m = scenario.link.measurement_delay
     verdicts = [verdict(name, [sample[name] for sample in got], m) for name in names]
     console = Console()
     console.width = max(console.width, TABLE_WIDTH)

@@ -1,58 +1,99 @@
 """The options that every command on a scenario shares: command line beats file."""
 
 import inspect
-from collections.abc import Callable
-from typing import Annotated, Any
+from collections.abc import Callable, Iterator
+from typing import Annotated, Any, NamedTuple
 
 import typer
 
-from laglab.scenario import load
+from laglab.scenario import assignment, load, read_timeline
+from laglab.scenario.keys import NO_UNIT, rows
 
 ScenarioArgument = Annotated[
     str, typer.Argument(metavar="SCENARIO", help="A shipped scenario's name, or a TOML file.")
 ]
 
 
-def _option(*names: str, help: str, metavar: str | None = None) -> Any:  # noqa: A002
-    return typer.Option(*names, help=help, metavar=metavar, show_default=False)
-
-
 POSE = "X,Y,THETA"
-OVERRIDES: dict[str, Any] = {
+
+
+class Own(NamedTuple):
+    """A key's own option: its type on the command line, and how it is written."""
+
+    type: object
+    name: str
+    metavar: str | None = None
+
+
+OWN: dict[str, Own] = {
+    "link.command_delay": Own(int | None, "-n"),
+    "link.measurement_delay": Own(int | None, "-m"),
+    "start": Own(str | None, "--start", POSE),
+    "goal": Own(str | None, "--goal", POSE),
+    "seed": Own(int | None, "--seed"),
+    "noise": Own(bool | None, "--noise/--no-noise"),
+    "duration": Own(float | None, "--duration"),
+    "estimator.initial_covariance": Own(float | None, "--p0"),
+    "estimator.initial_estimate": Own(str | None, "--initial-estimate", POSE),
+    "law.v_max": Own(float | None, "--v-max"),
+    "law.omega_max": Own(float | None, "--omega-max"),
+    "law.goal_tolerance": Own(float | None, "--goal-tolerance"),
+    "pace": Own(str | None, "--pace"),
+    "speed": Own(float | None, "--speed"),
+    "silence_timeout": Own(float | None, "--silence"),
+    "plant.fmi": Own(int | None, "--fmi"),
+}
+"""Dotted key of a scenario → its option, which says what the key says."""
+OF_SEVERAL_KEYS: dict[str, Any] = {
     "estimator": Annotated[
         list[str] | None,
-        _option("--estimator", help="The filter in the loop; further ones shadow it."),
-    ],
-    "command_delay": Annotated[int | None, _option("-n", help="Command delay [ticks].")],
-    "measurement_delay": Annotated[int | None, _option("-m", help="Measurement delay [ticks].")],
-    "start": Annotated[str | None, _option("--start", help="Start pose.", metavar=POSE)],
-    "goal": Annotated[str | None, _option("--goal", help="Goal pose.", metavar=POSE)],
-    "seed": Annotated[int | None, _option("--seed", help="Seed of every random draw.")],
-    "noise": Annotated[
-        bool | None, _option("--noise/--no-noise", help="Wheel and measurement noise.")
-    ],
-    "duration": Annotated[float | None, _option("--duration", help="Simulated time [s].")],
-    "initial_covariance": Annotated[float | None, _option("--p0", help="P_0 = VALUE·I.")],
-    "initial_estimate": Annotated[
-        str | None, _option("--initial-estimate", help="x̂_0.", metavar=POSE)
-    ],
-    "v_max": Annotated[float | None, _option("--v-max", help="Speed limit [m/s].")],
-    "omega_max": Annotated[float | None, _option("--omega-max", help="Turn limit [rad/s].")],
-    "goal_tolerance": Annotated[
-        float | None, _option("--goal-tolerance", help="Turn on the spot inside it [m].")
-    ],
-    "pace": Annotated[str | None, _option("--pace", help="lockstep, or realtime.")],
-    "speed": Annotated[float | None, _option("--speed", help="Real time so many times as fast.")],
-    "silence_timeout": Annotated[
-        float | None, _option("--silence", help="Seconds until a silent side counts as gone.")
+        typer.Option("--estimator", help="The filter in the loop; further ones shadow it."),
     ],
     "timeline": Annotated[
         str | None,
-        _option("--timeline", help="What the link does when: TOML, or a run's link.csv."),
+        typer.Option("--timeline", help="What the link does when: TOML, or a run's link.csv."),
     ],
-    "fmi": Annotated[int | None, _option("--fmi", help="The FMU's FMI version, 2 or 3.")],
+    "set": Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Any key of a scenario, such as link.command.loss=0.1; may be repeated. "
+            "It beats the file, and a key's own option beats it.",
+        ),
+    ],
 }
-"""Scenario field → its command-line option."""
+
+
+def _overrides(options: dict[str, Any]) -> dict[str, object]:
+    """What beats the file; takes the options out that say it."""
+    own = {key: options.pop(_parameter(key)) for key in OWN}
+    own = {key: value for key, value in own.items() if value is not None}
+    if names := options.pop("estimator"):
+        own |= {"estimator.kind": names[0]}
+        own |= {"estimator.compare": names[1:]} if names[1:] else {}
+    if timeline := options.pop("timeline"):
+        own |= read_timeline(timeline)
+    told = dict(map(assignment, options.pop("set") or []))
+    return {key: value for key, value in told.items() if key not in own} | own
+
+
+def _parameter(key: str) -> str:
+    return key.replace(".", "_")
+
+
+def _parameters() -> Iterator[inspect.Parameter]:
+    """SCENARIO, and the options that override it."""
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    yield inspect.Parameter("scenario", keyword, annotation=ScenarioArgument)
+    for name, hint in OF_SEVERAL_KEYS.items():
+        yield inspect.Parameter(name, keyword, default=None, annotation=hint)
+    said = {row.place: row.key for row in rows()}
+    for key, own in OWN.items():
+        unit = said[key].unit
+        text = said[key].sentence + (f" [{unit}]" if unit != NO_UNIT else "")
+        option = typer.Option(None, own.name, metavar=own.metavar, help=text, show_default=False)
+        yield inspect.Parameter(_parameter(key), keyword, default=option, annotation=own.type)
 
 
 def on_scenario(command: Callable[..., None]) -> Callable[..., None]:
@@ -60,20 +101,11 @@ def on_scenario(command: Callable[..., None]) -> Callable[..., None]:
     own = list(inspect.signature(command).parameters.values())[1:]
 
     def wrapper(scenario: str, **options: Any) -> None:
-        overrides = {field: options.pop(field) for field in OVERRIDES}
-        given = {field: value for field, value in overrides.items() if value is not None}
-        if names := given.pop("estimator", None):
-            given |= {"estimator": names[0]} | ({"compare": names[1:]} if names[1:] else {})
-        command(load(scenario, given), **options)
+        overrides = _overrides(options)
+        command(load(scenario, overrides, lambda text: typer.echo(text, err=True)), **options)
 
-    parameters = [
-        inspect.Parameter("scenario", inspect.Parameter.KEYWORD_ONLY, annotation=ScenarioArgument),
-        *(
-            inspect.Parameter(field, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=hint)
-            for field, hint in OVERRIDES.items()
-        ),
-        *(parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY) for parameter in own),
-    ]
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    parameters = [*_parameters(), *(each.replace(kind=keyword) for each in own)]
     wrapper.__name__ = command.__name__
     wrapper.__doc__ = command.__doc__
     wrapper.__annotations__ = {item.name: item.annotation for item in parameters}

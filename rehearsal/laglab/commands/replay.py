@@ -44,7 +44,7 @@ def replay(
 ) -> None:
     """Estimate again from the log of a session, of the simulated or of a real robot."""
     require(DRAWING)
-    overrides = {} if p0 is None else {"initial_covariance": p0}
+    overrides = {} if p0 is None else {"estimator.initial_covariance": p0}
     told = load(scenario or str(tlog.parent / SCENARIO_FILE), overrides)
     session = list(read_session(tlog))
     if not session:

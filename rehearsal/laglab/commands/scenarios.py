@@ -12,9 +12,9 @@ def scenarios() -> None:
     for name, scenario in shipped().items():
         table.add_row(
             name,
-            scenario.estimator,
-            str(scenario.command_delay),
-            str(scenario.measurement_delay),
+            scenario.estimator.kind,
+            str(scenario.link.command_delay),
+            str(scenario.link.measurement_delay),
             "on" if scenario.noise else "off",
             scenario.description,
         )

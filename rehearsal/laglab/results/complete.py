@@ -57,10 +57,10 @@ def complete(
         ResultsError: something cannot be written.
     """
     try:
-        numbers = digest(trace_pieces(directory / TRACE_FILE), scenario.measurement_delay)
+        numbers = digest(trace_pieces(directory / TRACE_FILE), scenario.link.measurement_delay)
     except TraceError as error:
         raise nothing_recorded(ending, str(error)) from None
-    compared = {name: _shadowed(scenario, name, directory) for name in scenario.compare}
+    compared = {name: _shadowed(scenario, name, directory) for name in scenario.estimator.compare}
     summary = summarise(scenario, way, ending, numbers, compared)
     write_summary(summary, directory)
     run = Run(scenario, summary, directory)
@@ -77,12 +77,12 @@ def keep(scenario: Scenario, way: Way, ending: Ending, recorder: MemoryRecorder)
     session = list(heard(_frames(recorder.tlog)))
     shadows: dict[str, Shadow] = {}
     compared: dict[str, Errors | None] = {}
-    for name in scenario.compare:
+    for name in scenario.estimator.compare:
         rows = list(shadow_rows(scenario, name, session))
         shadows[name] = collected(rows)
-        compared[name] = shadow_error(rows, [trace], scenario.measurement_delay)
+        compared[name] = shadow_error(rows, [trace], scenario.link.measurement_delay)
     summary = summarise(
-        scenario, way, ending, digest([trace], scenario.measurement_delay), compared
+        scenario, way, ending, digest([trace], scenario.link.measurement_delay), compared
     )
     link = columns_of(recorder.link_rows, LinkRow)
     timing = columns_of(recorder.timing_rows, TimingRow)
@@ -109,7 +109,7 @@ def _shadowed(scenario: Scenario, name: str, directory: Path) -> Errors | None:
     rows = shadow_rows(scenario, name, read_session(directory / TLOG_FILE))
     written = kept_rows(rows, shadow_file(directory, name))
     pieces = trace_pieces(directory / TRACE_FILE)
-    return shadow_error(written, pieces, scenario.measurement_delay)
+    return shadow_error(written, pieces, scenario.link.measurement_delay)
 
 
 def summarise(
@@ -126,16 +126,16 @@ def summarise(
     converged = completed and has_converged(end, scenario.goal)
     final = _final(end, scenario)
     seconds = ending.loop_seconds
-    in_loop = {scenario.estimator: numbers.rms_error} if compared else {}
+    in_loop = {scenario.estimator.kind: numbers.rms_error} if compared else {}
     return Summary(
         laglab=version("laglab"),
         scenario=scenario.name,
         side=way.side,
         transport=way.transport,
         plant=way.plant,
-        estimator=scenario.estimator,
-        n=scenario.command_delay,
-        m=scenario.measurement_delay,
+        estimator=scenario.estimator.kind,
+        n=scenario.link.command_delay,
+        m=scenario.link.measurement_delay,
         seed=scenario.seed,
         ticks=ticks,
         pose=numbers.seen,

@@ -31,18 +31,18 @@ DOTS_PER_INCH = 120
 
 def empty_figure(width: float, height: float) -> Figure:
     """So many inches to draw on; matplotlib is loaded here, for a side alone does without."""
-    from matplotlib.figure import Figure
+    from laglab.results.picture import Picture
 
-    return Figure(figsize=(width, height), layout="constrained")
+    return Picture(figsize=(width, height), layout="constrained")
 
 
 def draw(trace: Trace, scenario: Scenario) -> Figure:
     """Three panels as in Figs. 4 to 7: path in the plane, heading, speeds; or as in Fig. 8, where
     estimators are compared."""
-    if not scenario.compare:
+    if not scenario.estimator.compare:
         return draw_side_by_side([(trace, scenario)])
-    deviations = {scenario.estimator: deviation(trace, loop_estimates(trace))}
-    for name in scenario.compare:
+    deviations = {scenario.estimator.kind: deviation(trace, loop_estimates(trace))}
+    for name in scenario.estimator.compare:
         deviations[name] = deviation(trace, shadow_estimates(trace, name))
     return draw_deviations(trace["time"], deviations, scenario)
 
@@ -61,11 +61,8 @@ def draw_side_by_side(runs: Sequence[tuple[Trace, Scenario]]) -> Figure:
 
 
 def title(scenario: Scenario) -> str:
-    """The scenario in a line: name, filter and delays."""
-    return (
-        f"{scenario.name}: {scenario.estimator}, "
-        f"n = {scenario.command_delay}, m = {scenario.measurement_delay}"
-    )
+    """The scenario in a line: name, filter, delays and noise."""
+    return f"{scenario.name}: {scenario.gist}"
 
 
 def draw_path(axes: Axes, trace: Trace, scenario: Scenario) -> None:

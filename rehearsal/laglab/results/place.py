@@ -30,7 +30,7 @@ def place(scenario: Scenario, out: Path | None, force: bool = False, suffix: str
     _check_writable(directory)
     for name in OURS:
         (directory / name).unlink(missing_ok=True)
-    text = scenario.to_toml()
+    text = scenario.to_toml(directory)
     try:
         (directory / SCENARIO_FILE).write_text(text, encoding="utf-8")
     except OSError as error:

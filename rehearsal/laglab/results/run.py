@@ -69,7 +69,7 @@ class Run:
     def trace(self) -> Trace:
         """All columns, each of shape (ticks + 1,). Raises TraceError."""
         trace = self.kept.trace if self.kept else read_trace(self._folder / TRACE_FILE)
-        for name in self.scenario.compare:
+        for name in self.scenario.estimator.compare:
             trace = trace | beside(trace, self._shadow(name), name)
         return trace
 
@@ -125,7 +125,7 @@ class Run:
             {name: column[::stride] for name, column in each.items()} for each in self.pieces()
         ]
         whole = {name: np.concatenate([each[name] for each in pieces]) for name in pieces[0]}
-        for name in self.scenario.compare:
+        for name in self.scenario.estimator.compare:
             whole |= beside(whole, _at(self._shadow(name), whole["tick"]), name)
         return whole
 
@@ -136,7 +136,8 @@ def open_run(directory: str | Path) -> Run:
     Raises: ResultsError, ScenarioError.
     """
     folder = Path(directory)
-    return Run(load(str(folder / SCENARIO_FILE)), read_summary(folder), folder)
+    summary = read_summary(folder)
+    return Run(load(str(folder / SCENARIO_FILE)), summary, folder)
 
 
 def _thinned(trace: Trace) -> Trace:

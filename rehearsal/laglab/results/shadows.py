@@ -11,7 +11,7 @@ from laglab.errors import ResultsError, ScenarioError
 from laglab.results.numbers import AXES, RmsError, deviation
 from laglab.results.summary import Errors
 from laglab.runs.station_side import station_config
-from laglab.scenario import Scenario
+from laglab.scenario import Scenario, changed
 from laglab_control import ESTIMATORS
 from laglab_gateway import Trace
 from laglab_station import SessionTick, ShadowRow, shadow
@@ -37,7 +37,7 @@ def shadow_rows(
     """
     if name not in ESTIMATORS:
         raise ScenarioError(f"--estimator: {name!r} is not one of {', '.join(ESTIMATORS)}")
-    config = station_config(scenario.model_copy(update={"estimator": name}))
+    config = station_config(changed(scenario, {"estimator.kind": name}))
     return shadow(config, session)
 
 

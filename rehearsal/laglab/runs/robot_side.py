@@ -71,36 +71,38 @@ class Setup:
 
 def robot_parameters(scenario: Scenario) -> laglab_fmu.RobotParameters:
     """The robot that the FMU simulates."""
+    plant = scenario.plant
     return laglab_fmu.RobotParameters(
-        wheel_radius=scenario.wheel_radius,
-        track=scenario.track,
+        wheel_radius=plant.wheel_radius,
+        track=plant.track,
         sample_time=scenario.sample_time,
-        wheel_noise_variance=scenario.wheel_noise_variance,
-        measurement_variance=scenario.measurement_variance,
+        wheel_noise_variance=plant.wheel_noise_variance,
+        measurement_variance=plant.measurement_variance,
         start=scenario.start,
         seed=scenario.seed,
         noise=scenario.noise,
-        wheel_speed_max=scenario.wheel_speed_max,
-        motor_time_constant=scenario.motor_time_constant,
-        wheel_radius_error=scenario.wheel_radius_error,
-        track_error=scenario.track_error,
-        wheel_slip=scenario.wheel_slip,
+        integration=plant.integration,
+        wheel_speed_max=plant.wheel_speed_max,
+        motor_time_constant=plant.motor_time_constant,
+        wheel_radius_error=plant.wheel_radius_error,
+        track_error=plant.track_error,
+        wheel_slip=plant.wheel_slip,
     )
 
 
 def shown_parameters(scenario: Scenario) -> Parameters:
     """What a ground station reads: the gateway's own, the law's gains, the noise [SI units]."""
-    noise = scenario.measurement_variance if scenario.noise else (0.0, 0.0, 0.0)
+    noise = scenario.plant.measurement_variance if scenario.noise else (0.0, 0.0, 0.0)
     others = {
-        "LAW_GAMMA": scenario.gamma,
-        "LAW_LAMBDA": scenario.lambda_,
-        "LAW_H": scenario.h,
-        "NOISE_WHEEL": scenario.wheel_noise_variance if scenario.noise else 0.0,
+        "LAW_GAMMA": scenario.law.gamma,
+        "LAW_LAMBDA": scenario.law.lambda_,
+        "LAW_H": scenario.law.h,
+        "NOISE_WHEEL": scenario.plant.wheel_noise_variance if scenario.noise else 0.0,
         **dict(zip(("NOISE_X", "NOISE_Y", "NOISE_THETA"), noise, strict=True)),
     }
     return standard_parameters(
-        scenario.command_delay,
-        scenario.measurement_delay,
+        scenario.link.command_delay,
+        scenario.link.measurement_delay,
         scenario.safety,
         [Parameter(name, value) for name, value in others.items()],
     )
@@ -109,13 +111,13 @@ def shown_parameters(scenario: Scenario) -> Parameters:
 def gateway_config(scenario: Scenario) -> GatewayConfig:
     """What the link and the robot's side do."""
     return GatewayConfig(
-        command_delay=scenario.command_delay,
-        measurement_delay=scenario.measurement_delay,
+        command_delay=scenario.link.command_delay,
+        measurement_delay=scenario.link.measurement_delay,
         last_tick=scenario.last_tick,
         sample_time=scenario.sample_time,
         safety=scenario.safety,
-        wheel_radius=scenario.wheel_radius,
-        track=scenario.track,
+        wheel_radius=scenario.plant.wheel_radius,
+        track=scenario.plant.track,
     )
 
 
@@ -133,7 +135,7 @@ def open_gateway(
 ) -> Iterator[Gateway]:
     """The robot's side, its FMU loaded until the context ends."""
     parameters = robot_parameters(scenario)
-    with laglab_fmu.Robot.open(scenario.fmi, parameters) as robot:
+    with laglab_fmu.Robot.open(scenario.plant.fmi, parameters) as robot:
         plant = FmuPlant(robot, parameters)
         free_running = scenario.pace == "realtime"
         services = robot_services(scenario, free_running, armed=armed)
@@ -145,8 +147,7 @@ DIRECTIONS: tuple[Direction, ...] = ("command", "measurement")
 
 def link_fates(scenario: Scenario) -> dict[Direction, Fates]:
     """What decides over the frames of each direction that is not ideal, seeded by the scenario."""
-    if scenario.link.replay is not None:
-        log = Path(scenario.link.replay)
+    if (log := scenario.link.replay) is not None:
         return {direction: RecordedFates(read_link_log(log, direction)) for direction in DIRECTIONS}
     fates: dict[Direction, Fates] = {}
     for number, direction in enumerate(DIRECTIONS):

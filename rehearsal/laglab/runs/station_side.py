@@ -17,47 +17,39 @@ from laglab_station import Station
 
 def robot_model(scenario: Scenario) -> RobotModel:
     """What the controller believes of the robot."""
+    plant = scenario.plant
     return RobotModel(
         sample_time=scenario.sample_time,
-        wheel_radius=scenario.wheel_radius,
-        track=scenario.track,
-        Q=scenario.wheel_noise_variance * np.eye(2),
-        R=np.diag(scenario.measurement_variance),
+        wheel_radius=plant.wheel_radius,
+        track=plant.track,
+        Q=plant.wheel_noise_variance * np.eye(2),
+        R=np.diag(plant.measurement_variance),
     )
 
 
 def station_config(scenario: Scenario) -> StationConfig:
     """The remote station's side."""
-    law = Law(
-        goal=scenario.goal,
-        gamma=scenario.gamma,
-        lambda_=scenario.lambda_,
-        h=scenario.h,
-        v_max=scenario.v_max,
-        omega_max=scenario.omega_max,
-        goal_tolerance=scenario.goal_tolerance,
-    )
     return StationConfig(
-        estimator=scenario.estimator,
+        estimator=scenario.estimator.kind,
         model=robot_model(scenario),
-        law=law,
+        law=Law(goal=scenario.goal, **dict(scenario.law)),
         initial_estimate=scenario.first_estimate(),
-        initial_covariance=scenario.initial_covariance * np.eye(3),
-        command_delay=scenario.command_delay,
+        initial_covariance=scenario.estimator.initial_covariance * np.eye(3),
+        command_delay=scenario.link.command_delay,
     )
 
 
 def station_settings(scenario: Scenario) -> Settings:
     """What the robot is told to compare with."""
-    v_max, omega_max = scenario.v_max, scenario.omega_max
+    v_max, omega_max = scenario.law.v_max, scenario.law.omega_max
     return Settings(
         sample_time=scenario.sample_time,
-        wheel_radius=scenario.wheel_radius,
-        track=scenario.track,
+        wheel_radius=scenario.plant.wheel_radius,
+        track=scenario.plant.track,
         v_max=math.inf if v_max is None else v_max,
         omega_max=math.inf if omega_max is None else omega_max,
-        command_delay=scenario.command_delay,
-        measurement_delay=scenario.measurement_delay,
+        command_delay=scenario.link.command_delay,
+        measurement_delay=scenario.link.measurement_delay,
     )
 
 

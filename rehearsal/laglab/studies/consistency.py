@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from laglab.interface import run
 from laglab.results.numbers import deviation
 from laglab.runs.station_side import robot_model
-from laglab.scenario import Scenario
+from laglab.scenario import Scenario, changed
 from laglab_control import ESTIMATORS, Replay, constant_delay, replay
 from laglab_gateway import Trace
 
@@ -105,8 +105,9 @@ def samples(
 ) -> Iterator[dict[str, Sample]]:
     """Each seed's loop, and every filter on its record; in the order in which they are done."""
     runs = [
-        scenario.model_copy(
-            update={"seed": scenario.seed + i, "noise": True, "initial_estimate": "drawn"}
+        changed(
+            scenario,
+            {"seed": scenario.seed + i, "noise": True, "estimator.initial_estimate": "drawn"},
         )
         for i in range(seeds)
     ]
@@ -136,9 +137,9 @@ def _reestimated(scenario: Scenario, name: str, trace: Trace) -> Replay:
     return replay(
         estimator,
         scenario.first_estimate(),
-        scenario.initial_covariance * np.eye(3),
+        scenario.estimator.initial_covariance * np.eye(3),
         inputs,
-        constant_delay(measurements, scenario.measurement_delay),
+        constant_delay(measurements, scenario.link.measurement_delay),
     )
 
 

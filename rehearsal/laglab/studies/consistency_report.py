@@ -24,8 +24,8 @@ def consistency_table(scenario: Scenario, verdicts: Sequence[Verdict], seeds: in
     """One line a filter."""
     low, high = verdicts[0].bounds
     table = Table(
-        title=f"{scenario.name}: P_0 = {scenario.initial_covariance:g} I, n = "
-        f"{scenario.command_delay}, m = {scenario.measurement_delay}, {seeds} seeds",
+        title=f"{scenario.name}: P_0 = {scenario.estimator.initial_covariance:g} I, n = "
+        f"{scenario.link.command_delay}, m = {scenario.link.measurement_delay}, {seeds} seeds",
         caption=f"of a consistent filter NEES and NIS average 3, here {low:.2f} to {high:.2f} "
         "(95 %); % of ticks within; claimed : true standard deviation",
         box=None,

@@ -10,7 +10,7 @@ from rich.table import Table
 
 from laglab.interface import run
 from laglab.results.summary import Errors
-from laglab.scenario import Scenario
+from laglab.scenario import Scenario, changed
 from laglab_control import Erratum, PrintedController
 
 EXACT = 1e-9
@@ -53,9 +53,9 @@ def costs(scenario: Scenario, seeds: int) -> Iterator[Cost]:
 
 
 def _cost(scenario: Scenario, variant: Variant, seeds: int) -> Cost:
-    errors, converged, _ = _trial(scenario.model_copy(update={"noise": False}), variant)
+    errors, converged, _ = _trial(changed(scenario, {"noise": False}), variant)
     noisy = [
-        _trial(scenario.model_copy(update={"noise": True, "seed": scenario.seed + i}), variant)
+        _trial(changed(scenario, {"noise": True, "seed": scenario.seed + i}), variant)
         for i in range(seeds)
     ]
     kept = [errors for errors, _, whole in noisy if whole and errors]
@@ -78,8 +78,8 @@ def costs_table(scenario: Scenario, rows: list[Cost]) -> Table:
     """One line a variant."""
     table = Table(
         box=None,
-        title=f"{scenario.name}: popf, n = {scenario.command_delay}, "
-        f"m = {scenario.measurement_delay}, P_0 = {scenario.initial_covariance:g} I",
+        title=f"{scenario.name}: popf, n = {scenario.link.command_delay}, "
+        f"m = {scenario.link.measurement_delay}, P_0 = {scenario.estimator.initial_covariance:g} I",
         caption="RMS error of the estimate in x (m), y (m), θ (rad); diverged: runs with noise",
     )
     for column in ("as printed in", "without noise", "converges", "with noise", "diverged"):

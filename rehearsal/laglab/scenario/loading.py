@@ -1,0 +1,85 @@
+"""Scenarios from files: read, put together with what beats the file, and checked."""
+
+import tomllib
+from collections.abc import Callable
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from laglab.errors import ScenarioError
+from laglab.scenario.model import Scenario
+from laglab.scenario.overrides import Overrides, put
+
+SHIPPED = resources.files("laglab.scenario") / "shipped"
+SAYS_NOTHING = {"name", "description"}
+"""A file that has no other keys does not say what is run."""
+
+
+def load(
+    reference: str, overrides: Overrides | None = None, tell: Callable[[str], None] | None = None
+) -> Scenario:
+    """A scenario by its shipped name or by a path to a TOML file; `overrides` beat the file.
+
+    `tell` is told, in a line, what is run when the file says nothing of it. Raises ScenarioError:
+    no such scenario, not TOML, or a key that cannot be.
+    """
+    fields, path = _read(reference)
+    says_nothing = fields.keys() <= SAYS_NOTHING
+    scenario = _made({"name": path.stem} | fields, overrides or {}, reference)
+    if tell and says_nothing:
+        tell(f"{reference} sets nothing, so it runs by default: {scenario.gist}")
+    return scenario
+
+
+def changed(scenario: Scenario, overrides: Overrides) -> Scenario:
+    """The same with other values. Raises: ScenarioError, when one cannot be."""
+    return _made(scenario.fields(), overrides, scenario.name)
+
+
+def _made(fields: dict[str, Any], overrides: Overrides, called: str) -> Scenario:
+    try:
+        for key, value in overrides.items():
+            put(fields, key, value)
+        return Scenario.model_validate(fields)
+    except ScenarioError as error:
+        raise ScenarioError(f"{called}: {error}") from None
+    except ValidationError as error:
+        from laglab.scenario.problems import first_problem  # whoever is right does without
+
+        raise ScenarioError(f"{called}: {first_problem(error)}") from None
+
+
+def shipped() -> dict[str, Scenario]:
+    """The scenarios that come with the package, by name."""
+    return {name: load(name) for name in _shipped_names()}
+
+
+def _shipped_names() -> list[str]:
+    names = (Path(file.name) for file in SHIPPED.iterdir())
+    return sorted(name.stem for name in names if name.suffix == ".toml")
+
+
+def _read(reference: str) -> tuple[dict[str, Any], Path]:
+    path = Path(str(SHIPPED / f"{reference}.toml"))
+    if "/" in reference or not path.is_file():
+        path = Path(reference)
+    try:
+        fields = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (FileNotFoundError, IsADirectoryError):
+        names = ", ".join(_shipped_names())
+        raise ScenarioError(
+            f"{reference}: no such scenario; shipped: {names}; or give a path to a TOML file"
+        ) from None
+    except (OSError, ValueError) as error:
+        raise ScenarioError(f"{reference}: not a readable TOML file: {error}") from None
+    return _anchored(fields, path.parent), path
+
+
+def _anchored(fields: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """With the path in it, which is relative to the file's folder, as one that can be opened."""
+    match fields:
+        case {"link": {"replay": str(replay)}}:
+            fields["link"]["replay"] = str(folder / replay)
+    return fields

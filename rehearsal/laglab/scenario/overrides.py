@@ -1,0 +1,59 @@
+"""Values by dotted keys: what beats a file, from the command line or from a program."""
+
+import re
+import tomllib
+from collections.abc import Mapping
+from typing import Any
+
+from laglab.errors import ScenarioError
+
+Overrides = Mapping[str, object]
+"""Dotted key → value. The tables of a list are counted from 0: `link.event.0.at`."""
+
+
+def assignment(text: str) -> tuple[str, object]:
+    """`KEY=VALUE`, a dotted key and a TOML value; words that are none are text.
+
+    Raises: ScenarioError.
+    """
+    key, equals, value = (part.strip() for part in text.partition("="))
+    if not equals or not re.fullmatch(r"[\w-]+(\.[\w-]+)*", key):
+        raise ScenarioError(f"--set {text}: must be KEY=VALUE, such as link.command_delay=15")
+    try:
+        read = tomllib.loads(f"value = {value}")
+    except ValueError as error:
+        if value[:1] in {"", "[", "{", '"', "'"}:
+            raise ScenarioError(f"--set {text}: {value!r} is no TOML value: {error}") from None
+        return key, value
+    return key, read["value"] if len(read) == 1 else value
+
+
+def put(fields: dict[str, Any], key: str, value: object) -> None:
+    """Put `value` where the dotted key says, and make the tables on the way.
+
+    Raises: ScenarioError, naming where, when what is on the way is no table.
+    """
+    here: Any = fields
+    *way, last = key.split(".")
+    for depth, part in enumerate(way, start=1):
+        here = _inside(here, part, ".".join(way[:depth]))
+    if isinstance(here, dict):
+        here[last] = value
+    else:
+        here[_number(here, last, key)] = value
+
+
+def _inside(here: Any, part: str, place: str) -> Any:
+    below = (
+        here.setdefault(part, {}) if isinstance(here, dict) else here[_number(here, part, place)]
+    )
+    if not isinstance(below, dict | list):
+        raise ScenarioError(f"{place}: must be a table to have keys, not {below!r}")
+    return below
+
+
+def _number(elements: list[Any], part: str, place: str) -> int:
+    if not part.isdecimal() or int(part) >= len(elements):
+        last = len(elements) - 1
+        raise ScenarioError(f"{place}: must be the number of an element, 0 to {last}, not {part!r}")
+    return int(part)

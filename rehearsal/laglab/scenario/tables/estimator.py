@@ -1,0 +1,56 @@
+"""`[estimator]`: which filter, and what it is told of the start."""
+
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, WithJsonSchema
+
+from laglab.scenario.tables.table import POSE, Pose, Table
+from laglab_control import ESTIMATORS, StationConfig
+from laglab_gateway.values import NotNegative, described, saying
+
+
+def _known(name: str) -> str:
+    if name not in ESTIMATORS:
+        raise ValueError(f"must be one of {', '.join(ESTIMATORS)}, not {name!r}")
+    return name
+
+
+def _comparable(name: str) -> str:
+    if not ESTIMATORS[_known(name)].predicts:
+        raise ValueError(f"must not be {name!r}, which estimates nothing that could be compared")
+    return name
+
+
+COMPARABLE = [name for name, kind in ESTIMATORS.items() if kind.predicts]
+EstimatorName = Annotated[
+    str, AfterValidator(_known), WithJsonSchema({"type": "string", "enum": list(ESTIMATORS)})
+]
+ComparedName = Annotated[
+    str, AfterValidator(_comparable), WithJsonSchema({"type": "string", "enum": COMPARABLE})
+]
+
+
+class EstimatorTable(Table):
+    """The filter in the loop, those that look on, and their prior."""
+
+    kind: Annotated[
+        EstimatorName, described("-", f"The filter in the loop: {', '.join(ESTIMATORS)}.")
+    ] = StationConfig.estimator
+    compare: Annotated[
+        tuple[ComparedName, ...],
+        described("-", "Filters that are run on the same record, to be compared with it."),
+    ] = ()
+    initial_covariance: Annotated[
+        NotNegative,
+        described(
+            "m², m², rad²", "The filter's variance of x, y and θ at first: P_0 is this times I."
+        ),
+    ] = 1e-4
+    initial_estimate: Annotated[
+        Literal["start", "drawn"] | Pose,
+        saying("'start', 'drawn' or three finite numbers, x, y and theta"),
+        described(
+            POSE,
+            "The filter's first pose: `start`, the robot's; `drawn` about it, by P_0; or a pose.",
+        ),
+    ] = "start"

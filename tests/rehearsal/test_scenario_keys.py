@@ -1,0 +1,179 @@
+"""Scenarios over all their keys: what is written reads back, and both sides take it."""
+
+import math
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from laglab.run.robot_side import gateway_config, link_fates, robot_parameters, shown_parameters
+from laglab.run.station_side import station_config
+
+from laglab.scenario import Scenario, changed, load
+from laglab.scenario.keys import ANY, rows
+from laglab_control import ESTIMATORS
+from laglab_gateway.link.log import LINK_HEADER
+
+Keys = dict[str, st.SearchStrategy[Any]]
+
+HERE = st.floats(-600, 600)
+POSE = st.tuples(HERE, HERE, st.floats(-1e9, 1e9)).map(list)
+POSITIVE = st.floats(0, 1e300, exclude_min=True)
+NOT_NEGATIVE = st.floats(0, 1e300)
+PROBABILITY = st.floats(0, 1)
+SHARE = st.floats(-1, 1, exclude_min=True, exclude_max=True)
+TEXT = st.text(st.characters(exclude_categories=["Cs"]), max_size=30)
+TICKS = st.integers(0, 10**6)
+
+
+def table(keys: Keys) -> st.SearchStrategy[dict[str, Any]]:
+    """A table with some of the keys."""
+    return st.fixed_dictionaries({}, optional=keys)
+
+
+EXTRA_DELAY: Keys = {
+    "distribution": st.sampled_from(["constant", "uniform", "normal", "exponential"]),
+    "mean": NOT_NEGATIVE,
+    "spread": NOT_NEGATIVE,
+}
+BURST: Keys = dict.fromkeys(("good_to_bad", "bad_to_good", "loss_good", "loss_bad"), PROBABILITY)
+IMPAIRMENTS: Keys = {
+    **dict.fromkeys(("loss", "reorder", "duplicate", "bit_error_rate"), PROBABILITY),
+    "extra_delay": table(EXTRA_DELAY),
+    "burst": table(BURST),
+    "reorder_by": NOT_NEGATIVE,
+    "bandwidth": POSITIVE,
+    "queue": st.integers(1, 10**9),
+    "outages": st.lists(st.tuples(NOT_NEGATIVE, NOT_NEGATIVE).map(list), max_size=2),
+}
+EVENT: Keys = {
+    "at": NOT_NEGATIVE,
+    "duration": POSITIVE | st.just(math.inf),
+    "link": table(IMPAIRMENTS),
+    "direction": st.sampled_from(["command", "measurement", "both"]),
+}
+LINK: Keys = {
+    "command_delay": TICKS,
+    "measurement_delay": TICKS,
+    "command": table(IMPAIRMENTS),
+    "measurement": table(IMPAIRMENTS),
+    "event": st.lists(table(EVENT), max_size=2),
+    "replay": st.sampled_from(["link.csv", "./link.csv", "earlier run/link.csv"]),
+}
+PLANT: Keys = {
+    "fmi": st.sampled_from([2, 3]),
+    "integration": st.sampled_from(["euler", "exact"]),
+    "wheel_radius": POSITIVE,
+    "track": POSITIVE,
+    "wheel_noise_variance": NOT_NEGATIVE,
+    "measurement_variance": st.tuples(POSITIVE, POSITIVE, POSITIVE).map(list),
+    "wheel_speed_max": NOT_NEGATIVE,
+    "motor_time_constant": NOT_NEGATIVE,
+    "wheel_radius_error": SHARE,
+    "track_error": SHARE,
+    "wheel_slip": st.floats(0, 1, exclude_max=True),
+}
+ESTIMATOR: Keys = {
+    "kind": st.sampled_from(list(ESTIMATORS)),
+    "compare": st.lists(st.sampled_from([name for name in ESTIMATORS if name != "raw"])),
+    "initial_covariance": st.floats(0, 1.0),
+    "initial_estimate": POSE | st.sampled_from(["start", "drawn"]),
+}
+LAW: Keys = dict.fromkeys(
+    ("gamma", "lambda", "h", "v_max", "omega_max", "goal_tolerance"), POSITIVE
+)
+SAFETY: Keys = {
+    **dict.fromkeys(("v_limit", "omega_limit"), POSITIVE),
+    **dict.fromkeys(("link_timeout", "ramp"), NOT_NEGATIVE),
+}
+TOP: Keys = {
+    "name": TEXT,
+    "description": TEXT,
+    "start": st.tuples(st.floats(-50, 50), st.floats(-50, 50), HERE).map(list),
+    "goal": st.tuples(st.floats(-50, 50), st.floats(-50, 50), HERE).map(list),
+    "duration": st.floats(1.0, 1e6) | st.just(math.inf),
+    "sample_time": st.floats(1e-3, 1.0),
+    "seed": st.integers(0, 2**31 - 1),
+    "noise": st.booleans(),
+    "pace": st.sampled_from(["lockstep", "realtime"]),
+    "speed": POSITIVE,
+    "silence_timeout": POSITIVE,
+    "plant": table(PLANT),
+    "estimator": table(ESTIMATOR),
+    "law": table(LAW),
+    "link": table(LINK),
+    "safety": table(SAFETY),
+}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """With what the scenarios refer to."""
+    folder = tmp_path_factory.mktemp("scenarios")
+    for log in (folder / "link.csv", folder / "earlier run" / "link.csv"):
+        log.parent.mkdir(exist_ok=True)
+        log.write_text(LINK_HEADER)
+    return folder
+
+
+def at(folder: Path, fields: dict[str, Any]) -> Scenario:
+    """The scenario whose file stands in that folder."""
+    replay = fields.get("link", {}).get("replay")
+    return changed(
+        Scenario(), {**fields, **({"link.replay": str(folder / replay)} if replay else {})}
+    )
+
+
+def test_the_strategies_know_every_key() -> None:
+    known = {
+        *TOP,
+        *(f"plant.{key}" for key in PLANT),
+        *(f"estimator.{key}" for key in ESTIMATOR),
+        *(f"law.{key}" for key in LAW),
+        *(f"link.{key}" for key in LINK),
+        *(f"safety.{key}" for key in SAFETY),
+        *(f"link.event.{ANY}.{key}" for key in EVENT),
+    }
+    for link in ("link.command", "link.measurement", f"link.event.{ANY}.link"):
+        known |= {f"{link}.{key}" for key in IMPAIRMENTS}
+        known |= {f"{link}.burst.{key}" for key in BURST}
+        known |= {f"{link}.extra_delay.{key}" for key in EXTRA_DELAY}
+    assert known == {row.place for row in rows()}
+
+
+@settings(max_examples=150, deadline=None)
+@given(table(TOP))
+def test_what_is_written_reads_back_to_the_same(folder: Path, fields: dict[str, Any]) -> None:
+    scenario, file = at(folder, fields), folder / "written.toml"
+    for place in (folder, None):
+        file.write_text(scenario.to_toml(place), encoding="utf-8", newline="")
+        assert load(str(file)) == scenario
+
+
+@settings(max_examples=50, deadline=None)
+@given(table(TOP))
+def test_what_a_scenario_allows_both_sides_take(folder: Path, fields: dict[str, Any]) -> None:
+    scenario = at(folder, fields)
+    station_config(scenario)
+    gateway_config(scenario)
+    link_fates(scenario)
+    shown_parameters(scenario)
+    assert robot_parameters(scenario).by_name()["integration"] in (1, 2)
+
+
+def test_a_path_is_relative_to_the_file_it_stands_in(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shutil.copytree(folder, tmp_path / "logs")
+    own = tmp_path / "own" / "scenario.toml"
+    own.parent.mkdir()
+    own.write_text('link.replay = "../logs/link.csv"\n')
+    monkeypatch.chdir(tmp_path / "own")
+    scenario = load("scenario.toml")
+    assert scenario.link.replay == (tmp_path / "logs" / "link.csv").resolve()
+    assert load(str(own)) == scenario
+    assert 'replay = "../logs/link.csv"' in scenario.to_toml(own.parent)
+    assert 'replay = "logs/link.csv"' in scenario.to_toml(tmp_path)
+    assert load("fig6", {"link.replay": "../logs/link.csv"}).link == scenario.link
