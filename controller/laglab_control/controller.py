@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from laglab_control.errors import ConfigError
 from laglab_control.estimators.family import EstimatorKind, estimator_kind
-from laglab_control.estimators.interface import Estimator, Measured, State
+from laglab_control.estimators.interface import Applied, Estimator, Measured, State
 from laglab_control.flight import Echo, Flight, hear, send, take_off
 from laglab_control.laws.aicardi import STAND_STILL, Demand, Law, as_input
 from laglab_control.limits import Ticks, check, covariance, finite_pose
@@ -114,14 +114,18 @@ class Controller:
         return Control(self._estimator.expect(estimate, s), flight, drive)
 
     def answer(
-        self, control: Control, measurements: Sequence[Measured], echoes: Sequence[Echo] = ()
+        self,
+        control: Control,
+        measurements: Sequence[Measured],
+        echoes: Sequence[Echo] = (),
+        recalled: Sequence[Applied] = (),
     ) -> Control:
         """The tick's correction and command, from all that arrived.
 
         The robot is to stand still when there is no estimate to drive it by, or it has diverged.
         """
         estimate, flight, drive = control
-        flight, inputs = hear(self.config.model, flight, echoes)
+        flight, inputs = hear(self.config.model, flight, echoes, recalled)
         estimate = self._estimator.correct(estimate, measurements, inputs)
         if estimate.x is None or self.diverged(estimate.x):
             return Control(estimate, flight, STAND_STILL)
