@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from laglab_control.errors import ConfigError
 from laglab_control.estimators.family import EstimatorKind, estimator_kind
 from laglab_control.estimators.interface import Applied, Estimator, Measured, State
-from laglab_control.flight import Echo, Flight, hear, send, take_off
+from laglab_control.flight import Echo, Flight, hear, known_as, send, take_off
 from laglab_control.laws.aicardi import STAND_STILL, Demand, Law, as_input
 from laglab_control.limits import Ticks, check, covariance, finite_pose
 from laglab_control.model import Vector
@@ -104,7 +104,7 @@ class Controller:
     def advance(self, control: Control) -> Control:
         """One tick later: the last command is on its way, the one n ticks older was applied."""
         estimate, flight, drive = control
-        flight, applied = send(self.config.model, flight, as_input(drive))
+        flight, applied = send(flight, as_input(drive))
         estimate = self._estimator.predict(estimate, self._applied(applied, drive))
         return Control(estimate, flight, drive)
 
@@ -125,10 +125,11 @@ class Controller:
         The robot is to stand still when there is no estimate to drive it by, or it has diverged.
         """
         estimate, flight, drive = control
-        flight, inputs = hear(self.config.model, flight, echoes, recalled)
+        flight, inputs = hear(flight, echoes, recalled)
         estimate = self._estimator.correct(estimate, measurements, inputs)
         if estimate.x is None or self.diverged(estimate.x):
             return Control(estimate, flight, STAND_STILL)
+        flight = known_as(flight, self._estimator.calibrated(estimate, self.config.model))
         pose = self._at_arrival(estimate.x, flight, drive)
         return Control(estimate, flight, self.config.law.drive(pose, drive.at_goal))
 

@@ -10,7 +10,7 @@ from laglab_control.model import Vector
 from laglab_control.motion import NOWHERE, Way, joined
 from laglab_control.past.log import Log, append, logged
 from laglab_control.past.sliding import SlidingProduct
-from laglab_control.robot import RobotModel
+from laglab_control.robot import Ways
 
 STAND = np.zeros(2)
 """The input before any command is in force."""
@@ -68,27 +68,31 @@ class Flight(NamedTuple):
     """u_{tick-n} ... u_{tick-1}: standing still for what was sent before tick 0."""
     ahead: Way
     """Where they lead."""
+    robot: Ways
+    """Whom they lead there."""
 
 
-def take_off(robot: RobotModel, command_delay: int) -> Flight:
+def take_off(robot: Ways, command_delay: int) -> Flight:
     """Before the first command."""
     nothing: SlidingProduct[Vector, Way] = SlidingProduct(joined, NOWHERE)
-    return _rebuilt(robot, Flight(0, logged(), command_delay, Told(), nothing, NOWHERE))
+    return _rebuilt(Flight(0, logged(), command_delay, Told(), nothing, NOWHERE, robot))
 
 
-def send(robot: RobotModel, flight: Flight, u: Vector) -> tuple[Flight, Vector]:
+def send(flight: Flight, u: Vector) -> tuple[Flight, Vector]:
     """With the command of this tick on its way; and the one that is in force until the next."""
-    tick, sent, n, told, in_flight, _ = flight
+    tick, sent, n, told, in_flight, _, robot = flight
     sent = append(sent, u, MEMORY)
     applied, in_flight = in_flight.push(u, robot.way(u)).pop()
-    return Flight(tick + 1, sent, n, told, in_flight, in_flight.product), applied
+    return Flight(tick + 1, sent, n, told, in_flight, in_flight.product, robot), applied
+
+
+def known_as(flight: Flight, robot: Ways) -> Flight:
+    """With commands that lead the robot as it is known by now."""
+    return flight if robot is flight.robot else _rebuilt(flight._replace(robot=robot))
 
 
 def hear(
-    robot: RobotModel,
-    flight: Flight,
-    echoes: Sequence[Echo],
-    recalled: Sequence[Applied] = (),
+    flight: Flight, echoes: Sequence[Echo], recalled: Sequence[Applied] = ()
 ) -> tuple[Flight, list[Applied]]:
     """With n as the echoes tell; and the inputs that were in force, as far as they are now known:
     from the echoes, and from what the robot was asked to recall.
@@ -97,17 +101,17 @@ def hear(
     """
     if not (echoes or recalled):
         return flight, []
-    tick, sent, n, told, in_flight, ahead = flight
+    tick, sent, n, told, in_flight, ahead, robot = flight
     inputs = [Applied(echo.tick, echo.u) for echo in echoes] + list(recalled)
     for echo in echoes:
         told = _heard(told, echo)
     if told.missing:
         told = _found(told, inputs, tick)
     seen = sorted(told.recent)[len(told.recent) // 2] if told.recent else n
-    flight = Flight(tick, sent, seen, told, in_flight, ahead)
+    flight = Flight(tick, sent, seen, told, in_flight, ahead, robot)
     if seen == n:
         return flight, inputs
-    flight = _rebuilt(robot, flight)
+    flight = _rebuilt(flight)
     return flight, inputs + _believed(flight, since=told.known + 1)
 
 
@@ -131,10 +135,10 @@ def _found(told: Told, inputs: Sequence[Applied], tick: int) -> Told:
     return told._replace(missing=missing)
 
 
-def _rebuilt(robot: RobotModel, flight: Flight) -> Flight:
+def _rebuilt(flight: Flight) -> Flight:
     in_flight = flight.in_flight.emptied()
     for u in _sent_since(flight, flight.tick - flight.command_delay):
-        in_flight = in_flight.push(u, robot.way(u))
+        in_flight = in_flight.push(u, flight.robot.way(u))
     return flight._replace(in_flight=in_flight, ahead=in_flight.product)
 
 

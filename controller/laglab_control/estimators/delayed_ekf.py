@@ -45,9 +45,21 @@ class DelayedState(Generic[W]):
         """Its covariance (d, d)."""
         return self._carried.P
 
+    def over(self, windows: Windows[W]) -> "DelayedState[W]":
+        """The same, carried on by other windows from now on."""
+        window = empty(windows)
+        for u in self.window:
+            window = window.push(u, windows.over(u))
+        return DelayedState(self.tick, self.filtered, window, windows)
+
     @cached_property
     def _carried(self) -> Belief:
         return self.windows.carry(self.filtered.newest.posterior, self.window.product)
+
+
+def empty(windows: Windows[W]) -> SlidingProduct[Vector, W]:
+    """The window of no input."""
+    return SlidingProduct(windows.compose, windows.identity)
 
 
 @dataclass(frozen=True)
@@ -67,16 +79,13 @@ class DelayedEkf(Estimator[DelayedState[W]]):
         """The prior of tick 0."""
         prior = Belief(x, P)
         first = Filtered(0, None, prior, None, prior)
-        window: SlidingProduct[Vector, W] = SlidingProduct(
-            self.windows.compose, self.windows.identity
-        )
-        return DelayedState(0, logged(first), window, self.windows)
+        return DelayedState(0, logged(first), empty(self.windows), self.windows)
 
     def predict(self, state: DelayedState[W], u: Vector) -> DelayedState[W]:
         """One more input in the window; unmeasured, the EKF follows `memory` ticks behind."""
         tick = state.tick + 1
-        window = state.window.push(u, self.windows.over(u))
-        predicted = DelayedState(tick, state.filtered, window, self.windows)
+        window = state.window.push(u, state.windows.over(u))
+        predicted = DelayedState(tick, state.filtered, window, state.windows)
         return self._advance(predicted, tick - self.memory, None, {})
 
     def correct(
@@ -117,7 +126,7 @@ class DelayedEkf(Estimator[DelayedState[W]]):
             u, window = window.pop()
             tick += 1
             filtered = self._extend(filtered, known.get(tick, u), z if tick == s else None)
-        return DelayedState(state.tick, filtered, window, self.windows)
+        return DelayedState(state.tick, filtered, window, state.windows)
 
     def _put_right(self, state: DelayedState[W], known: Mapping[int, Vector]) -> DelayedState[W]:
         """The window with those of its inputs that were wrong put right; `known` by the tick that
@@ -128,8 +137,8 @@ class DelayedEkf(Estimator[DelayedState[W]]):
         window = state.window.emptied()
         for tick, u in enumerate(state.window, start=newest + 1):
             right = known.get(tick, u)
-            window = window.push(right, self.windows.over(right))
-        return DelayedState(state.tick, state.filtered, window, self.windows)
+            window = window.push(right, state.windows.over(right))
+        return DelayedState(state.tick, state.filtered, window, state.windows)
 
     def _extend(self, filtered: Log[Filtered], u: Vector, z: Vector | None) -> Log[Filtered]:
         tick, *_, posterior = filtered.newest
@@ -154,4 +163,4 @@ class DelayedEkf(Estimator[DelayedState[W]]):
                 filtered = logged(self._corrected(past.tick, u, past.prior, z))
             else:
                 filtered = self._extend(filtered, u, z)
-        return DelayedState(state.tick, filtered, state.window, self.windows)
+        return DelayedState(state.tick, filtered, state.window, state.windows)

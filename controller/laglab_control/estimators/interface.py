@@ -6,6 +6,7 @@ from typing import NamedTuple, Protocol, TypeVar
 from laglab_control.errors import StampError
 from laglab_control.estimators.kalman import Innovation
 from laglab_control.model import Matrix, Vector
+from laglab_control.robot import Ways
 
 
 class Applied(NamedTuple):
@@ -90,6 +91,14 @@ class Estimator(Protocol[S]):
         Any other may come as well. Nothing can be prepared by those that say nothing else.
         """
         return state
+
+    def restart(self, state: S, x: Vector, P: Matrix) -> S:
+        """Tick 0 again, whose prior is x (d,), P (d, d); whatever else was learned is kept."""
+        return self.start(x, P)
+
+    def calibrated(self, state: S, robot: Ways) -> Ways:
+        """The robot as it is known by now: the one that was told, of those that learn nothing."""
+        return robot
 
     def innovation(self, state: S) -> Innovation | None:
         """Of the newest measurement used at this tick, as the estimator saw it; None without."""

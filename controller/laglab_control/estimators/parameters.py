@@ -1,0 +1,33 @@
+"""What a filter may learn of the robot besides its pose: how it makes speeds of its input."""
+
+from collections.abc import Sequence
+from typing import NamedTuple, Protocol
+
+from laglab_control.model import Vector
+
+
+class Taken(NamedTuple):
+    """An input as the robot takes it: v [m/s], omega [rad/s], and their derivatives by each
+    parameter."""
+
+    v: float
+    omega: float
+    by: tuple[tuple[float, float], ...]
+
+
+class Parameters(Protocol):
+    """b (p,): what makes the robot another than its model, all 0 where nothing does."""
+
+    @property
+    def deviations(self) -> tuple[float, ...]:
+        """How far from 0 each is expected: standard deviations (p,), at first."""
+        ...
+
+    @property
+    def walk(self) -> tuple[float, ...]:
+        """By how much each may change within a tick: standard deviations (p,)."""
+        ...
+
+    def taken(self, u: Vector, b: Sequence[float]) -> Taken:
+        """What the robot makes of the input u = [v, omega] [m/s, rad/s]."""
+        ...
