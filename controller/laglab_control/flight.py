@@ -87,8 +87,8 @@ def send(flight: Flight, u: Vector) -> tuple[Flight, Vector]:
 
 
 def known_as(flight: Flight, robot: Ways) -> Flight:
-    """With commands that lead the robot as it is known by now."""
-    return flight if robot is flight.robot else _rebuilt(flight._replace(robot=robot))
+    """With commands from now on that lead the robot as it is known by now."""
+    return flight if robot is flight.robot else flight._replace(robot=robot)
 
 
 def hear(

@@ -1,7 +1,7 @@
 """`calibrating-ekf`: `delayed-ekf` of the pose and of what the robot's model has wrong."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -98,8 +98,10 @@ class CalibratingEkf(Estimator[CalibratingState]):
         return state.motions
 
     def _linearised(self, state: CalibratingState) -> CalibratingState:
-        b = tuple(state.joint.filtered.newest.posterior.x.tolist()[3:])
-        if all(abs(value - at) <= self.tolerance for value, at in zip(b, state.motions.at)):
-            return state
-        motions = CalibratedMotions(self.robot, self.parameters, b)
-        return CalibratingState(state.joint.over(motions), motions)
+        """At the b of now, if it has moved."""
+        b = state.joint.filtered.newest.posterior.x.tolist()[3:]
+        for value, at in zip(b, state.motions.at, strict=True):
+            if not abs(value - at) <= self.tolerance:
+                motions = CalibratedMotions(self.robot, self.parameters, b)
+                return CalibratingState(replace(state.joint, windows=motions), motions)
+        return state

@@ -45,13 +45,6 @@ class DelayedState(Generic[W]):
         """Its covariance (d, d)."""
         return self._carried.P
 
-    def over(self, windows: Windows[W]) -> "DelayedState[W]":
-        """The same, carried on by other windows from now on."""
-        window = empty(windows)
-        for u in self.window:
-            window = window.push(u, windows.over(u))
-        return DelayedState(self.tick, self.filtered, window, windows)
-
     @cached_property
     def _carried(self) -> Belief:
         return self.windows.carry(self.filtered.newest.posterior, self.window.product)

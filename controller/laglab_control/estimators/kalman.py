@@ -55,16 +55,18 @@ def correct(model: Model, prior: Belief, z: Vector) -> Belief:
     K = gain(PHt, H.dot(PHt) + R)
     B = identity(len(x)) - K.dot(H)
     posterior = x + K.dot(model.innovation(z, model.h(x)))
-    return Belief(posterior, _sound(symmetric(B.dot(P).dot(B.T) + K.dot(R).dot(K.T))))
+    return Belief(posterior, _sound(symmetric(B.dot(P).dot(B.T) + K.dot(R).dot(K.T)), H))
 
 
-def _sound(P: Matrix) -> Matrix:
+def _sound(P: Matrix, H: Matrix) -> Matrix:
     """P, or where rounding has cost it its definiteness the nearest covariance.
 
     Joseph's form keeps P positive definite while R is; with a perfect sensor some of P is nothing
-    but rounding errors after a while.
+    but rounding errors after a while. What remains unknown once H x is known is as it was, so H x
+    tells.
     """
-    if _is_definite(P) or not np.all(np.isfinite(P)):
+    measured = P if len(H) == len(P) else H.dot(P).dot(H.T)
+    if _is_definite(measured) or not np.all(np.isfinite(P)):
         return P
     values, vectors = np.linalg.eigh(P)
     return symmetric((vectors * np.maximum(values, 0)) @ vectors.T)

@@ -12,22 +12,22 @@ class Taken(NamedTuple):
 
     v: float
     omega: float
-    by: tuple[tuple[float, float], ...]
+    by: Sequence[tuple[float, float]]
 
 
 class Parameters(Protocol):
     """b (p,): what makes the robot another than its model, all 0 where nothing does."""
 
     @property
-    def deviations(self) -> tuple[float, ...]:
-        """How far from 0 each is expected: standard deviations (p,), at first."""
-        ...
-
-    @property
-    def walk(self) -> tuple[float, ...]:
-        """By how much each may change within a tick: standard deviations (p,)."""
+    def deviations(self) -> Sequence[float]:
+        """How far from 0 each is expected at first: standard deviations (p,)."""
         ...
 
     def taken(self, u: Vector, b: Sequence[float]) -> Taken:
         """What the robot makes of the input u = [v, omega] [m/s, rad/s]."""
+        ...
+
+    def walk(self, u: Vector) -> Sequence[float]:
+        """The variances (p,) that a second with u in force adds to them [1/s]: they walk at
+        random."""
         ...

@@ -1,4 +1,4 @@
-"""Two wheels that are not as large as believed."""
+"""Two wheels that do not lead as far as believed."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,42 +9,41 @@ from laglab_control.model import Vector
 
 @dataclass(frozen=True)
 class WheelScales:
-    """b = [b_L, b_R]: the left wheel leads 1 + b_L times as far as believed, the right 1 + b_R."""
+    """b = [b_L, b_R]: the left wheel leads 1 + b_L times as far as believed, the right 1 + b_R.
+
+    They walk by the way that the wheel makes: a robot that stands forgets nothing.
+    """
 
     track: float
-    deviations: tuple[float, float] = (0.05, 0.05)
-    walk: tuple[float, float] = (1e-5, 1e-5)
+    """L [m], as believed."""
+    deviation: float = 0.05
+    """Of each at first."""
+    wander: float = 0.03
+    """By how much each changes on 1 m [m^-1/2], as a standard deviation."""
+
+    @property
+    def deviations(self) -> tuple[float, float]:
+        """Of both the same."""
+        return self.deviation, self.deviation
 
     def taken(self, u: Vector, b: Sequence[float]) -> Taken:
-        """(1) with the speeds of the rims scaled."""
+        """(1) of the wheels' speeds over ground, (1 + b_L) (v - omega L/2) and so on."""
+        left, right = self._rims(u)
+        more_left, more_right = b[0] * left, b[1] * right
         v, omega = u.tolist()
-        left, right = b
-        across = omega * self.track / 2
-        of_left, of_right = v - across, v + across
-        more, less = right * of_right, left * of_left
         return Taken(
-            v + (more + less) / 2,
-            omega + (more - less) / self.track,
-            ((of_left / 2, -of_left / self.track), (of_right / 2, of_right / self.track)),
+            v + (more_right + more_left) / 2,
+            omega + (more_right - more_left) / self.track,
+            ((left / 2, -left / self.track), (right / 2, right / self.track)),
         )
 
+    def walk(self, u: Vector) -> tuple[float, float]:
+        """In proportion to the speed of the wheel."""
+        left, right = self._rims(u)
+        return self.wander**2 * abs(left), self.wander**2 * abs(right)
 
-@dataclass(frozen=True)
-class WheelScalesAndTrack:
-    track: float
-    deviations: tuple[float, float, float] = (0.05, 0.05, 0.05)
-    walk: tuple[float, float, float] = (1e-5, 1e-5, 1e-5)
-
-    def taken(self, u: Vector, b: Sequence[float]) -> Taken:
+    def _rims(self, u: Vector) -> tuple[float, float]:
+        """The wheels' believed speeds over ground [m/s]."""
         v, omega = u.tolist()
-        left, right, wider = b
         across = omega * self.track / 2
-        of_left, of_right = v - across, v + across
-        more, less = right * of_right, left * of_left
-        track = self.track * (1 + wider)
-        turn = (of_right + more - of_left - less) / track
-        return Taken(
-            v + (more + less) / 2,
-            turn,
-            ((of_left / 2, -of_left / track), (of_right / 2, of_right / track), (0.0, -turn / (1 + wider))),
-        )
+        return v - across, v + across
