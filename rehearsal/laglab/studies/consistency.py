@@ -9,7 +9,6 @@ section 5.4.
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from multiprocessing import get_context
-from statistics import NormalDist
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +19,7 @@ from laglab.results.numbers import deviation
 from laglab.runs.station_side import robot_model
 from laglab.scenario import Scenario, changed
 from laglab_control import ESTIMATORS, Replay, constant_delay, replay
+from laglab_control.chi_square import chi_square_bound
 from laglab_gateway import Trace
 
 Array = NDArray[np.float64]
@@ -90,14 +90,8 @@ def chi_square_bounds(seeds: int) -> tuple[float, float]:
     """Between which the average of NEES or NIS over the seeds lies with 95 % probability."""
     degrees = DEGREES * seeds
     tail = (1 - CONFIDENCE) / 2
-    low, high = (_chi_square_quantile(p, degrees) / seeds for p in (tail, 1 - tail))
+    low, high = (chi_square_bound(above, degrees) / seeds for above in (1 - tail, tail))
     return low, high
-
-
-def _chi_square_quantile(probability: float, degrees: int) -> float:
-    """Wilson and Hilferty 1931: the cube root is nearly normal; within 1 % from 30 degrees on."""
-    spread = 2 / (9 * degrees)
-    return float(degrees * (1 - spread + NormalDist().inv_cdf(probability) * np.sqrt(spread)) ** 3)
 
 
 def samples(
