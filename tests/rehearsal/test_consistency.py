@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from laglab.scenario import load
-from laglab.studies.consistency import Sample, chi_square_bounds, samples, verdict
+from laglab.studies.consistency import Sample, chi_square_bounds, verdict
+from laglab.studies.workers import samples
 
 
 @pytest.mark.parametrize(

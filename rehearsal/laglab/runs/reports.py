@@ -63,10 +63,16 @@ class Failed(Struct, frozen=True, tag=True):
     """Whether the run had begun: what was wrong before is for the user to mend."""
 
 
+class Computed(Struct, frozen=True, tag=True):
+    """A part of what was to be computed: tables of doubles by name, row by row."""
+
+    tables: dict[str, bytes]
+
+
 class Ended(Struct, frozen=True, tag=True):
     """The process is gone, and how; always the last that is heard of it."""
 
     how: str
 
 
-Report = Listening | Progress | Warned | Finished | Answered | Failed | Ended
+Report = Listening | Progress | Warned | Finished | Answered | Failed | Computed | Ended

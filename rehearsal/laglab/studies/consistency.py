@@ -6,9 +6,7 @@ of them: Bar-Shalom, Li, Kirubarajan, "Estimation with Applications to Tracking 
 section 5.4.
 """
 
-from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from multiprocessing import get_context
+from collections.abc import Sequence
 from statistics import NormalDist
 from typing import NamedTuple
 
@@ -100,21 +98,10 @@ def _chi_square_quantile(probability: float, degrees: int) -> float:
     return float(degrees * (1 - spread + NormalDist().inv_cdf(probability) * np.sqrt(spread)) ** 3)
 
 
-def samples(
-    scenario: Scenario, estimators: Sequence[str], seeds: int, workers: int
-) -> Iterator[dict[str, Sample]]:
-    """Each seed's loop, and every filter on its record; in the order in which they are done."""
-    runs = [
-        changed(
-            scenario,
-            {"seed": scenario.seed + i, "noise": True, "estimator.initial_estimate": "drawn"},
-        )
-        for i in range(seeds)
-    ]
-    with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
-        waiting = [pool.submit(sample, run, tuple(estimators)) for run in runs]
-        for done in as_completed(waiting):
-            yield done.result()
+def nth(scenario: Scenario, number: int) -> Scenario:
+    """The scenario with the seed of that number; 0 is its own. Raises ScenarioError."""
+    drawn = {"noise": True, "estimator.initial_estimate": "drawn"}
+    return changed(scenario, {"seed": scenario.seed + number, **drawn})
 
 
 def sample(scenario: Scenario, estimators: Sequence[str]) -> dict[str, Sample]:
