@@ -25,6 +25,12 @@ class ResultsError(LaglabError):
     exit_code = 4
 
 
+class NoRunError(ResultsError):
+    """What is to be read is no run's; the text names the file."""
+
+    exit_code = 2
+
+
 class PlaceError(LaglabError):
     """Results cannot go where they are to go; nothing has run yet."""
 

@@ -45,6 +45,8 @@ def run(
         KeyboardInterrupt: Ctrl-C; what was recorded is in `out`, and nothing goes on running.
     """
     chosen = _chosen(scenario, overrides)
+    if out is None:
+        chosen.must_end()  # memory has no room for what does not end
     with progress_of(chosen, progress) as told:
         if transport == "inline" and out is None:
             recorder = MemoryRecorder()

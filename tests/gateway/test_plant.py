@@ -172,8 +172,11 @@ def test_a_dead_robot_is_named_by_its_link_and_the_station_is_told(
     wait_until(tmp_path, is_driving)
     robot.kill()
     killed = time.monotonic()
-    errors = ended(gateway, 4)
+    said = ""
+    while "the robot has been silent" not in said:
+        said += gateway.stderr.readline()
     assert time.monotonic() - killed < 4
+    errors = said + ended(gateway, 4)
     last = int(read_trace(tmp_path / "run" / "trace.csv")["tick"][-1]) + 1
     assert f"pty://{tmp_path}/port: the robot has been silent since its tick {last}" in errors
     assert "the other side failed" in ended(station, 4)

@@ -5,12 +5,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from laglab.run.robot_side import gateway_config
-from laglab.run.station_side import station_config
-from laglab.run.trials import run_trial
 from pydantic import ValidationError
 
+import laglab
 from laglab.errors import ScenarioError
+from laglab.runs.robot_side import gateway_config
+from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario, assignment, changed, load, shipped
 from laglab.scenario.keys import ANY, rows
 from laglab_control import ConfigError, Law, RobotModel, StationConfig
@@ -88,7 +88,7 @@ def test_dotted_keys_reach_into_the_tables() -> None:
 
 def test_the_robot_moves_as_its_integration_says() -> None:
     euler, exact = (
-        run_trial(load("fig6", {"duration": 1.0, "plant.integration": way}))
+        laglab.run("fig6", {"duration": 1.0, "plant.integration": way}).trace
         for way in ("euler", "exact")
     )
     difference = np.hypot(euler["x"][-1] - exact["x"][-1], euler["y"][-1] - exact["y"][-1])
@@ -144,7 +144,7 @@ def test_a_duration_without_end_has_no_last_tick() -> None:
     assert endless.last_tick is None
     assert gateway_config(endless).last_tick is None
     with pytest.raises(ScenarioError, match="duration: must be finite here, not inf"):
-        run_trial(endless)
+        laglab.run(endless)
 
 
 def test_the_distance_from_start_to_goal_is_what_counts() -> None:

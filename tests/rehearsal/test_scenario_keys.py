@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from laglab.run.robot_side import gateway_config, link_fates, robot_parameters, shown_parameters
-from laglab.run.station_side import station_config
 
+from laglab.runs.robot_side import gateway_config, link_fates, robot_parameters, shown_parameters
+from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario, changed, load
 from laglab.scenario.keys import ANY, rows
 from laglab_control import ESTIMATORS

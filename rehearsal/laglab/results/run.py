@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.errors import ResultsError
+from laglab.errors import NoRunError
 from laglab.results.figure import draw
 from laglab.results.shadows import Shadow, beside, read_shadow, shadow_file
 from laglab.results.summary import Summary, read_summary
@@ -106,7 +106,7 @@ class Run:
     @property
     def _folder(self) -> Path:
         if self.directory is None:
-            raise ResultsError("this run was kept in memory alone: it has no files")
+            raise NoRunError("this run was kept in memory alone: it has no files")
         return self.directory
 
     def _shadow(self, name: str) -> Shadow:
@@ -167,9 +167,9 @@ def _columns(path: Path, kind: type[LinkRow | TimingRow]) -> Columns:
         with path.open(newline="", encoding="utf-8") as file:
             header, *rows = csv.reader(file)
     except (OSError, ValueError) as error:
-        raise ResultsError(f"{path} cannot be read: {error}") from error
+        raise NoRunError(f"{path} cannot be read: {error}") from error
     if header != list(kind._fields):
-        raise ResultsError(f"{path}: expected the columns {','.join(kind._fields)}")
+        raise NoRunError(f"{path}: expected the columns {','.join(kind._fields)}")
     whole = [row for row in rows if len(row) == len(header)]
     cells = zip(*whole, strict=True) if whole else ((),) * len(header)
     return {name: _parsed(column) for name, column in zip(header, cells, strict=True)}

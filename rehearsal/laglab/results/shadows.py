@@ -7,12 +7,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.errors import ResultsError, ScenarioError
+from laglab.errors import NoRunError, ResultsError
 from laglab.results.numbers import AXES, RmsError, deviation
 from laglab.results.summary import Errors
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario, changed
-from laglab_control import ESTIMATORS
 from laglab_gateway import Trace
 from laglab_station import SessionTick, ShadowRow, shadow
 
@@ -35,8 +34,6 @@ def shadow_rows(
 
     Raises: ScenarioError, when there is no such estimator.
     """
-    if name not in ESTIMATORS:
-        raise ScenarioError(f"--estimator: {name!r} is not one of {', '.join(ESTIMATORS)}")
     config = station_config(changed(scenario, {"estimator.kind": name}))
     return shadow(config, session)
 
@@ -70,9 +67,9 @@ def read_shadow(path: Path) -> Shadow:
             header, *cells = csv.reader(file)
             table = np.array(cells, dtype=np.float64).reshape(-1, len(COLUMNS))
     except (OSError, ValueError) as error:
-        raise ResultsError(f"{path} is not what an estimator said: {error}") from error
+        raise NoRunError(f"{path} is not what an estimator said: {error}") from error
     if header != list(COLUMNS):
-        raise ResultsError(f"{path}: expected the columns {','.join(COLUMNS)}")
+        raise NoRunError(f"{path}: expected the columns {','.join(COLUMNS)}")
     return dict(zip(COLUMNS, table.T, strict=True))
 
 

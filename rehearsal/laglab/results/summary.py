@@ -6,7 +6,7 @@ from typing import Literal
 import msgspec
 from msgspec import Struct
 
-from laglab.errors import ResultsError
+from laglab.errors import NoRunError, ResultsError
 from laglab_gateway import LinkReport, TimingReport
 from laglab_station import StationReport
 
@@ -84,7 +84,7 @@ def write_summary(summary: Summary, directory: Path) -> None:
 
 
 def read_summary(directory: Path) -> Summary:
-    """The summary that a run left. Raises ResultsError: there is none, or of another version."""
+    """The summary that a run left. Raises NoRunError: there is none, or of another version."""
     path = directory / SUMMARY_FILE
     try:
         data = path.read_bytes()
@@ -92,10 +92,10 @@ def read_summary(directory: Path) -> Summary:
         if version == SCHEMA_VERSION:
             return msgspec.json.decode(data, type=Summary)
     except OSError as error:
-        raise ResultsError(f"{path} cannot be read: {error.strerror}") from error
+        raise NoRunError(f"{path} cannot be read: {error.strerror}") from error
     except msgspec.DecodeError as error:
-        raise ResultsError(f"{path} is not a run's summary: {error}") from error
-    raise ResultsError(f"{path} has schema version {version}, this laglab reads {SCHEMA_VERSION}")
+        raise NoRunError(f"{path} is not a run's summary: {error}") from error
+    raise NoRunError(f"{path} has schema version {version}, this laglab reads {SCHEMA_VERSION}")
 
 
 class _Versioned(Struct):
