@@ -7,8 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from laglab_control import Control, Controller, State, StationConfig, is_far
+from laglab_control import Control, Controller, StationConfig, is_far
 from laglab_control.flight import MEMORY
+from laglab_control.model import Matrix, Vector
 from laglab_protocol import (
     STATION_COMPONENT,
     STATION_HEARTBEAT,
@@ -312,7 +313,8 @@ class Station:
         return [Recall(self._first + asks.first, asks.ticks, *self._peer)] if asks else []
 
     def _messages(self, tick: int, control: Control, asks: list[Message]) -> list[Message]:
-        estimates = [*asks, *_estimate(tick, control.estimate)]
+        x, P = control.estimate.x, control.P
+        estimates = asks if x is None or P is None else [*asks, _estimate(tick, x, P)]
         v, omega, _ = control.drive
         command = Command(v, omega, tick, *self._peer, estimates=len(estimates))
         if control.estimate.x is not None and self._controller.diverged(control.estimate.x):
@@ -321,10 +323,7 @@ class Station:
         return [*estimates, command]
 
 
-def _estimate(tick: int, state: State) -> list[Estimate]:
-    """The report of the estimate; none when the estimator claims no covariance."""
-    if state.x is None or state.P is None:
-        return []
-    (xx, xy, xt), (_, yy, yt), (_, _, tt) = state.P.tolist()
-    x, y, theta = state.x.tolist()
-    return [Estimate(x, y, theta, xx, xy, xt, yy, yt, tt, tick)]
+def _estimate(tick: int, pose: Vector, P: Matrix) -> Estimate:
+    (xx, xy, xt), (_, yy, yt), (_, _, tt) = P.tolist()
+    x, y, theta = pose.tolist()
+    return Estimate(x, y, theta, xx, xy, xt, yy, yt, tt, tick)
