@@ -24,6 +24,7 @@ from laglab.scenario import Scenario, changed
 from laglab.studies.overhearing import Known, Overhearing
 from laglab.studies.workers import shared_out
 from laglab_control.chi_square import chi_square_bound
+from laglab_gateway import Trace
 
 Array = NDArray[np.float64]
 DEGREES = 3
@@ -141,8 +142,8 @@ def samples(
     Raises: RunError, when a worker fails or dies.
     """
     jobs = [Job(nth(scenario, number).to_toml(), tuple(estimators)) for number in range(seeds)]
-    for _, judged in shared_out(judge, jobs, workers):
-        yield {name: _unpacked(table) for name, table in judged.samples.items()}
+    for _, answer in shared_out(judge, jobs, workers):
+        yield {name: _unpacked(table) for name, table in answer.samples.items()}
 
 
 def judge(job: Job) -> Judged:
@@ -151,11 +152,13 @@ def judge(job: Job) -> Judged:
     said: dict[str, list[Known]] = {}
     others = tuple(name for name in job.estimators if name != scenario.estimator.kind)
     done = run(scenario, controller=partial(Overhearing, others=others, said=said))
-    pose = robot_pose(done.trace)
-    return Judged({name: np.column_stack(_judged(said[name], pose)).tobytes() for name in said})
+    tables = {name: np.column_stack(judged(heard, done.trace)) for name, heard in said.items()}
+    return Judged({name: table.tobytes() for name, table in tables.items()})
 
 
-def _judged(said: Sequence[Known], pose: Array) -> Sample:
+def judged(said: Sequence[Known], trace: Trace) -> Sample:
+    """What a filter said at the ticks of a run, beside where the robot was."""
+    pose = robot_pose(trace)
     x, P, nis, ahead, P_ahead, n = (np.array(column) for column in zip(*said, strict=True))
     error = _wrapped(x - pose[: len(x)])
     arrival = np.arange(len(x)) + n
