@@ -7,8 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from laglab_control import Control, Controller, State, StationConfig, is_far
+from laglab_control import Control, Controller, StationConfig, is_far
 from laglab_control.flight import MEMORY
+from laglab_control.model import Matrix, Vector
 from laglab_protocol import (
     STATION_COMPONENT,
     STATION_HEARTBEAT,
@@ -30,6 +31,7 @@ from laglab_protocol import (
     Tick,
     Timesync,
 )
+from laglab_station.alarms import Alarms
 from laglab_station.hearing import echoes, measured, recalled
 from laglab_station.joining import Rest, observe, prior
 from laglab_station.recalling import Asked, question
@@ -92,6 +94,7 @@ class Station:
         self._closed = False
         self._measurement_delay: int | None = None
         self._times = Durations()
+        self._alarms = Alarms()
         self._warnings: dict[str, str] = {}
         """By what they are about: of each the first."""
         self._unjudged = False
@@ -124,9 +127,18 @@ class Station:
 
     def report(self) -> StationReport:
         """How the run went so far."""
-        n_seen = self._control.flight.command_delay
-        times = self._times.quantiles()
-        return StationReport.of(n_seen, self._measurement_delay, times, self.warnings)
+        p50, p99, longest = self._times.quantiles() or (None, None, None)
+        return StationReport(
+            n_seen=self._control.flight.command_delay,
+            m_seen=self._measurement_delay,
+            tick_p50_s=p50,
+            tick_p99_s=p99,
+            tick_longest_s=longest,
+            warnings=self.warnings,
+            alarms=tuple(self._alarms.told),
+            alarms_raised=self._alarms.raised,
+            gated=self._alarms.gated(self._controller, self._control),
+        )
 
     def heartbeat(self) -> list[bytes]:
         """The frames that make the station known to the robot, and what it was told."""
@@ -214,6 +226,7 @@ class Station:
         self._judge()
         self._first, self._tick = tick, None
         self._asked = Asked()
+        self._alarms.handed_over(self._controller, self._control)
         self._control, self._ahead = self._controller.start(), None
         self._joining = Rest() if tick > 0 and self._controller.kind.predicts else None
 
@@ -248,6 +261,7 @@ class Station:
             self._answer.insert(0, self._outcome)  # the command closes the answer
             return
         config = replace(self._config, initial_estimate=x, initial_covariance=P)
+        self._alarms.handed_over(self._controller, self._control)
         self._controller = self._make_controller(config)
         self._control = self._controller.start()
         self._first = self._tick = rest.tick
@@ -279,7 +293,8 @@ class Station:
         self._control = self._controller.answer(control, arrived, told, known)
         self._tick = tick
         asks = self._ask(tick - first) if arrived else []
-        self._answer = self._messages(tick, self._control, asks)
+        said = self._alarms.note(self._controller, self._control, tick)
+        self._answer = said + self._messages(tick, self._control, asks)
         self._unjudged = bool(arrived)
 
     def _judge(self) -> None:
@@ -298,7 +313,8 @@ class Station:
         return [Recall(self._first + asks.first, asks.ticks, *self._peer)] if asks else []
 
     def _messages(self, tick: int, control: Control, asks: list[Message]) -> list[Message]:
-        estimates = [*asks, *_estimate(tick, control.estimate)]
+        x, P = control.estimate.x, control.P
+        estimates = asks if x is None or P is None else [*asks, _estimate(tick, x, P)]
         v, omega, _ = control.drive
         command = Command(v, omega, tick, *self._peer, estimates=len(estimates))
         if control.estimate.x is not None and self._controller.diverged(control.estimate.x):
@@ -307,10 +323,7 @@ class Station:
         return [*estimates, command]
 
 
-def _estimate(tick: int, state: State) -> list[Estimate]:
-    """The report of the estimate; none when the estimator claims no covariance."""
-    if state.x is None or state.P is None:
-        return []
-    (xx, xy, xt), (_, yy, yt), (_, _, tt) = state.P.tolist()
-    x, y, theta = state.x.tolist()
-    return [Estimate(x, y, theta, xx, xy, xt, yy, yt, tt, tick)]
+def _estimate(tick: int, pose: Vector, P: Matrix) -> Estimate:
+    (xx, xy, xt), (_, yy, yt), (_, _, tt) = P.tolist()
+    x, y, theta = pose.tolist()
+    return Estimate(x, y, theta, xx, xy, xt, yy, yt, tt, tick)

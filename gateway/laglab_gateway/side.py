@@ -23,6 +23,7 @@ from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import RobotState, Services
 from laglab_gateway.values import Positive, Ticks, checked
 from laglab_protocol import (
+    MAV_SEVERITY_WARNING,
     RECALLED,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
@@ -99,7 +100,6 @@ def reason_of(end: End) -> EndReason:
     return EndReason(end.reason) if end.reason in set(EndReason) else EndReason.FAILED
 
 
-MAV_SEVERITY_WARNING = 4
 APPLIED_A_TICK = 5
 """So many LAGLAB_APPLIED go with a tick's measurements: a datagram stays in one piece."""
 MOST_OWED = KEPT // RECALLED + 1
@@ -217,6 +217,9 @@ class RobotSide(ABC):
                 self._push(message)
             case Command() | Estimate():
                 pass  # said again, or of a tick that has not come
+            case Statustext():
+                if not self.answered:  # said again with a repeated answer, it is told once
+                    self.announce(message.text.decode(errors="replace"))
             case End():
                 self._take_end(message)
             case _:

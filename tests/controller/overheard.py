@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import laglab
-from laglab_control import Control, Controller, Echo, Measured, StationConfig
+from laglab_control import Applied, Control, Controller, Echo, Measured, StationConfig
 
 SEEDS = (1, 2, 3, 4)
 TICKS = 200
@@ -41,9 +41,13 @@ class Overheard(Controller):
     heard: list[Heard] = field(default_factory=list)
 
     def answer(
-        self, control: Control, measurements: Sequence[Measured], echoes: Sequence[Echo] = ()
+        self,
+        control: Control,
+        measurements: Sequence[Measured],
+        echoes: Sequence[Echo] = (),
+        recalled: Sequence[Applied] = (),
     ) -> Control:
-        control = super().answer(control, measurements, echoes)
+        control = super().answer(control, measurements, echoes, recalled)
         self.heard.append(Heard(measurements, control.estimate.x, control.estimate.P))
         return control
 
@@ -109,6 +113,7 @@ def recorded(seed: int, noise: float = 1.0) -> Record:
         "duration": TICKS / 100,
         "seed": seed,
         "link.measurement": RADIO,
+        "law.caution": 1.0,
         "estimator.initial_covariance": 1e-3 * noise**2,
         "plant.wheel_noise_variance": 1.0 * noise**2,
         "plant.measurement_variance": tuple(noise**2 * np.array([0.01, 0.004, 0.018])),

@@ -163,11 +163,11 @@ def _moved(x: Sequence[float], motion: Motion, slopes: Slopes) -> Moved:
     by_x, by_y, by_theta = zip(*turned, strict=True)
     A = (1.0, 0.0, -dy, *by_x, 0.0, 1.0, dx, *by_y, 0.0, 0.0, 1.0, *by_theta)
     cc, cs, ss = c * c, c * s, s * s
-    across_xy = cs * (xx - yy) + (cc - ss) * xy
-    turned_xt, turned_yt = c * xt - s * yt, s * xt + c * yt
-    noise = (
-        (cc * xx - 2 * cs * xy + ss * yy, across_xy, turned_xt)
-        + (across_xy, ss * xx + 2 * cs * xy + cc * yy, turned_yt)
-        + (turned_xt, turned_yt, tt)
+    xx, xy, yy = (
+        cc * xx - 2 * cs * xy + ss * yy,
+        cs * (xx - yy) + (cc - ss) * xy,
+        ss * xx + 2 * cs * xy + cc * yy,
     )
+    xt, yt = c * xt - s * yt, s * xt + c * yt
+    noise = (xx, xy, xt, xy, yy, yt, xt, yt, tt)
     return Moved((start_x + dx, start_y + dy, theta + turn), A, noise)

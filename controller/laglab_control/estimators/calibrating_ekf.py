@@ -1,4 +1,4 @@
-"""`calibrating-ekf`: `delayed-ekf` of the pose and of what the robot's model has wrong."""
+"""`calibrating-ekf`: `delayed-ekf` of the pose and of what the model of the robot has wrong."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -10,14 +10,14 @@ import numpy as np
 from laglab_control.estimators.calibrated import CalibratedMotions, CalibratedRobot, Learned
 from laglab_control.estimators.delayed_ekf import DelayedEkf, DelayedState
 from laglab_control.estimators.interface import Applied, Estimator, Measured
-from laglab_control.estimators.kalman import Innovation
+from laglab_control.estimators.kalman import Belief, Innovation
 from laglab_control.estimators.parameters import Parameters
 from laglab_control.model import Matrix, Vector
 from laglab_control.robot import RobotModel, Ways
 
 
 class CalibratingState(NamedTuple):
-    """The delayed filter of [x, y, theta, b_1 ... b_p]; b is at the newest measurement's tick."""
+    """What `delayed-ekf` knows of x and b together, and what carries it to the present."""
 
     joint: DelayedState[Learned]
     motions: CalibratedMotions
@@ -29,7 +29,7 @@ class CalibratingState(NamedTuple):
 
     @property
     def x(self) -> Vector:
-        """The pose (3,)."""
+        """The pose (3,) at `tick`."""
         return self.joint.x
 
     @property
@@ -38,48 +38,36 @@ class CalibratingState(NamedTuple):
         return self.joint.P
 
     @property
-    def parameters(self) -> Vector:
-        """b (p,)."""
-        return self.joint.filtered.newest.posterior.x[3:]
-
-    @property
-    def parameters_covariance(self) -> Matrix:
-        """(p, p)."""
-        return self.joint.filtered.newest.posterior.P[3:, 3:]
+    def parameters(self) -> Belief:
+        """b (p,) and its covariance (p, p), as of the newest measurement."""
+        x, P = self.joint.filtered.newest.posterior
+        return Belief(x[3:], P[3:, 3:])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CalibratingEkf(Estimator[CalibratingState]):
-    """An EKF of the pose x and of parameters b that walk at random, delayed as `delayed-ekf` is."""
+    """An EKF of [x, y, theta, b_1 ... b_p] where the measurements belong, carried to the present.
+
+    The EKF is linearised at its own b; the windows that carry it at one that is within `tolerance`
+    of it when an input comes in.
+    """
 
     robot: RobotModel
     parameters: Parameters
     memory: int = 1024
     tolerance: float = 0.01
-    """The windows are linearised anew as soon as some b is further than this from where they were.
-    """
-
-    @cached_property
-    def _ekf(self) -> DelayedEkf[Learned]:
-        nominal = CalibratedMotions(
-            self.robot, self.parameters, (0.0,) * len(self.parameters.deviations)
-        )
-        return DelayedEkf(CalibratedRobot(self.robot, self.parameters), nominal, self.memory)
 
     def start(self, x: Vector, P: Matrix) -> CalibratingState:
-        b = np.zeros(len(self.parameters.deviations))
-        return self._start(x, P, b, np.diag(np.square(self.parameters.deviations)))
+        """The prior of tick 0, with b = 0 as surely as `parameters` say."""
+        deviations = np.array(self.parameters.deviations)
+        return self._from(x, P, Belief(np.zeros(len(deviations)), np.diag(deviations**2)))
 
     def restart(self, state: CalibratingState, x: Vector, P: Matrix) -> CalibratingState:
-        return self._start(x, P, state.parameters, state.parameters_covariance)
-
-    def _start(self, x, P, b, B):
-        joint = np.zeros((3 + len(b),) * 2)
-        joint[:3, :3], joint[3:, 3:] = P, B
-        begun = self._ekf.start(np.append(x, b), joint)
-        return self._linearised(CalibratingState(begun, self._ekf.windows))
+        """The prior of tick 0, with b as it is known by now."""
+        return self._from(x, P, state.parameters)
 
     def predict(self, state: CalibratingState, u: Vector) -> CalibratingState:
+        """As `delayed-ekf` does."""
         return CalibratingState(self._ekf.predict(state.joint, u), state.motions)
 
     def correct(
@@ -88,20 +76,38 @@ class CalibratingEkf(Estimator[CalibratingState]):
         measurements: Sequence[Measured],
         inputs: Sequence[Applied] = (),
     ) -> CalibratingState:
+        """As `delayed-ekf` does."""
         joint = self._ekf.correct(state.joint, measurements, inputs)
         return self._linearised(CalibratingState(joint, state.motions))
 
     def innovation(self, state: CalibratingState) -> Innovation | None:
-        return self._ekf.innovation(state.joint)
+        """As `delayed-ekf` has it."""
+        return state.joint.innovation
 
     def calibrated(self, state: CalibratingState, robot: Ways) -> Ways:
+        """The robot with b as it is known by now, to `tolerance`."""
         return state.motions
 
+    @cached_property
+    def _ekf(self) -> DelayedEkf[Learned]:
+        nominal = [0.0] * len(self.parameters.deviations)
+        motions = CalibratedMotions(self.robot, self.parameters, nominal)
+        return DelayedEkf(CalibratedRobot(self.robot, self.parameters), motions, self.memory)
+
+    def _from(self, x: Vector, P: Matrix, b: Belief) -> CalibratingState:
+        size = len(x) + len(b.x)
+        joint = np.zeros((size, size))
+        joint[:3, :3], joint[3:, 3:] = P, b.P
+        motions = CalibratedMotions(self.robot, self.parameters, b.x.tolist())
+        begun = self._ekf.start(np.concatenate((x, b.x)), joint)
+        return CalibratingState(replace(begun, windows=motions), motions)
+
     def _linearised(self, state: CalibratingState) -> CalibratingState:
-        """At the b of now, if it has moved."""
-        b = state.joint.filtered.newest.posterior.x.tolist()[3:]
-        for value, at in zip(b, state.motions.at, strict=True):
+        """For the inputs to come, at b as it is known by now."""
+        joint, motions = state
+        b = joint.filtered.newest.posterior.x.tolist()[3:]
+        for value, at in zip(b, motions.at, strict=True):
             if not abs(value - at) <= self.tolerance:
                 motions = CalibratedMotions(self.robot, self.parameters, b)
-                return CalibratingState(replace(state.joint, windows=motions), motions)
+                return CalibratingState(replace(joint, windows=motions), motions)
         return state

@@ -92,17 +92,18 @@ class Estimator(Protocol[S]):
         """
         return state
 
-    def restart(self, state: S, x: Vector, P: Matrix) -> S:
-        """Tick 0 again, whose prior is x (d,), P (d, d); whatever else was learned is kept."""
-        return self.start(x, P)
-
     def calibrated(self, state: S, robot: Ways) -> Ways:
         """The robot as it is known by now: the one that was told, of those that learn nothing."""
         return robot
 
     def innovation(self, state: S) -> Innovation | None:
-        """Of the newest measurement used at this tick, as the estimator saw it; None without."""
+        """Of the newest measurement that the last `correct` was given, as the estimator saw it;
+        None when it was given none, or did not use it."""
         ...
+
+    def restart(self, state: S, x: Vector, P: Matrix) -> S:
+        """Tick 0 again, with the prior x (d,), P (d, d); what else has been learned is kept."""
+        return self.start(x, P)
 
     def warning(self, state: S) -> str | None:
         """What nobody who relies on this estimate must overlook; None while there is nothing."""

@@ -8,6 +8,7 @@ from laglab_control.estimators.interface import Applied, Estimator, Measured, St
 from laglab_control.estimators.kalman import Innovation
 from laglab_control.model import Matrix, Vector
 from laglab_control.past.log import Log, append, cut, logged
+from laglab_control.robot import Ways
 
 S = TypeVar("S", bound=State)
 
@@ -82,6 +83,14 @@ class Rewinding(Generic[S]):
         """The estimator's own."""
         inner, arrived, past = state
         return RewindingState(self.estimator.expect(inner, s), arrived, past)
+
+    def restart(self, state: RewindingState[S], x: Vector, P: Matrix) -> RewindingState[S]:
+        """The estimator's own."""
+        return RewindingState(self.estimator.restart(state.state, x, P), (), logged())
+
+    def calibrated(self, state: RewindingState[S], robot: Ways) -> Ways:
+        """The estimator's own."""
+        return self.estimator.calibrated(state.state, robot)
 
     def innovation(self, state: RewindingState[S]) -> Innovation | None:
         """The estimator's own."""
