@@ -89,10 +89,15 @@ class CalibratingEkf(Estimator[CalibratingState]):
         return state.motions
 
     @cached_property
+    def model(self) -> CalibratedRobot:
+        """Of x and b together."""
+        return CalibratedRobot(self.robot, self.parameters)
+
+    @cached_property
     def _ekf(self) -> DelayedEkf[Learned]:
         nominal = [0.0] * len(self.parameters.deviations)
         motions = CalibratedMotions(self.robot, self.parameters, nominal)
-        return DelayedEkf(CalibratedRobot(self.robot, self.parameters), motions, self.memory)
+        return DelayedEkf(self.model, motions, self.memory)
 
     def _from(self, x: Vector, P: Matrix, b: Belief) -> CalibratingState:
         size = len(x) + len(b.x)
