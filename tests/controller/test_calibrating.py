@@ -20,7 +20,7 @@ from laglab_control import (
     replay,
 )
 
-ROBOT = RobotModel()
+ROBOT = RobotModel(Q=np.diag([0.02, 0.005]))
 Ts, L = ROBOT.sample_time, ROBOT.track
 START = np.array([-1.0, 0.5, 0.3])
 P0 = np.diag([1e-3, 2e-3, 3e-3])
@@ -188,6 +188,8 @@ def test_begun_again_it_keeps_what_it_has_learned():
     np.testing.assert_allclose(again.P, P0, atol=1e-18)
     np.testing.assert_array_equal(again.parameters.x, state.parameters.x)
     np.testing.assert_array_equal(again.parameters.P, state.parameters.P)
+    way = estimator.calibrated(again, ROBOT).way(np.array([1.0, 0.0]))
+    assert way.x == pytest.approx(Ts * (1 + state.parameters.x.mean()))
 
 
 class Keeping(Controller):
@@ -199,7 +201,7 @@ class Keeping(Controller):
 
 
 def kept_run(scenario, estimator, overrides):
-    """A run without the guard, its controller and all that the controller said."""
+    """A run, without the guard where nothing else is said, and its controller, which keeps all."""
     made = []
 
     def make(config):
@@ -242,8 +244,8 @@ def test_what_was_learned_is_used_for_the_commands_in_flight():
         "duration": 4.0,
     }
     apart = {}
-    for name in ("calibrating-ekf", "delayed-ekf"):
-        run, controller = kept_run("lab", name, overrides)
+    for name, guard in (("calibrating-ekf", True), ("delayed-ekf", False)):
+        run, controller = kept_run("lab", name, overrides | {"estimator.guard": guard})
         said = np.array([controller.at_arrival(control).x for control in controller.kept])
         true = np.stack([run.trace[column] for column in ("x", "y", "theta")], axis=1)
         apart[name] = np.abs(said[200:-n] - true[200 + n :])[:, :2].max()

@@ -122,8 +122,9 @@ class Guard(Estimator[Watched]):
         return state if inner is state.state else state._replace(state=inner)
 
     def calibrated(self, state: Watched, robot: Ways) -> Ways:
-        """The estimator's own."""
-        return self._active(state).calibrated(state.state, robot)
+        """The estimator's own, also while it is given up."""
+        known = state.state if state.aside is None else state.aside
+        return self.estimator.calibrated(known, robot)
 
     def innovation(self, state: Watched) -> Innovation | None:
         """The estimator's own."""
