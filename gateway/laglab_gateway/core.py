@@ -77,7 +77,7 @@ class Gateway(RobotSide):
                 self._owed.owe(self._memory.answers(message))
             else:
                 self.audit.command.arrived(message.tick, k)
-                self._follow(message, k)
+                self._follow(message, k, safety)
         supervised = supervise(self._drive, k, Ts, safety)
         if supervised.mode is not self._drive.mode:
             self.audit.stopped(k)

@@ -1,6 +1,7 @@
 """The speeds that were in force at the last ticks, for a station that missed what told of them."""
 
 import math
+from collections import OrderedDict
 from collections.abc import Iterable, Iterator
 from itertools import islice
 
@@ -22,13 +23,13 @@ class SpeedMemory:
     """By tick, as they come; the oldest are forgotten."""
 
     def __init__(self) -> None:
-        self._speeds: dict[int, Speeds] = {}
+        self._speeds = OrderedDict[int, Speeds]()
 
     def keep(self, tick: int, speeds: Speeds) -> None:
         """In force on [t_tick, t_{tick+1})."""
         self._speeds[tick] = speeds
         if len(self._speeds) > KEPT:
-            del self._speeds[next(iter(self._speeds))]
+            self._speeds.popitem(last=False)
 
     def learn(self, told: Applied) -> None:
         """What a robot of its own memory says."""

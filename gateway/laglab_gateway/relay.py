@@ -164,7 +164,7 @@ class Relay(RobotSide):
         for message, _ in self._commands.due(self.elapsed + 1):
             if isinstance(message, Recall):
                 frames += self._remember(message)
-            elif self._follow(message, self.tick + 1):
+            elif self._follow(message, self.tick + 1, self.safety):
                 frames.append(self._to_robot.frame(self._allowed(message)))
         return frames
 

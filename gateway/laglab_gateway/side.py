@@ -86,6 +86,8 @@ class RobotSide(ABC):
         self._measurements: Channel[Measurement | Applied] = Channel(
             "measurement", m, Ts, fates.get("measurement")
         )
+        self._estimates: deque[Estimate] = deque(maxlen=UNANNOUNCED)
+        self._recalls: deque[Recall] = deque(maxlen=UNANNOUNCED)
         self._memory = SpeedMemory()
         self._owed = Owed()
         self._answered_through = -1
@@ -96,8 +98,8 @@ class RobotSide(ABC):
         """Nothing was said yet at this tick."""
         self.tick = tick
         self._batch: list[Message] = []
-        self._estimates: deque[Estimate] = deque(maxlen=UNANNOUNCED)
-        self._recalls: deque[Recall] = deque(maxlen=UNANNOUNCED)
+        self._estimates.clear()
+        self._recalls.clear()
         self._command: Command | None = None
 
     @property
@@ -197,9 +199,9 @@ class RobotSide(ABC):
         self._answered_through = command.tick
         self._commands.push(self.elapsed, command)
 
-    def _follow(self, command: Command, tick: int) -> bool:
+    def _follow(self, command: Command, tick: int, safety: Safety) -> bool:
         """Follow from `tick` on a command that came across; False, and counted, when rejected."""
-        if rejected := rejection(self._drive, command, self.safety):
+        if rejected := rejection(self._drive, command, safety):
             self.audit.refused[rejected] += 1
             return False
         self._drive = follow(command, tick)
