@@ -28,6 +28,7 @@ from laglab_protocol import (
     Tick,
     Timesync,
 )
+from laglab_station.alarms import Alarms
 from laglab_station.hearing import Came, echoes, measured, recalled
 from laglab_station.joining import Rest, observe, prior
 from laglab_station.recalling import Asked, question
@@ -86,6 +87,7 @@ class Station:
         self._times = Durations()
         self._took: int | None = None
         """The last answer [ns], until there is time to count it."""
+        self._alarms = Alarms()
         self._warnings: dict[str, str] = {}
         """By what they are about: of each the first."""
         self._unjudged = False
@@ -118,10 +120,19 @@ class Station:
 
     def report(self) -> StationReport:
         """How the run went so far."""
-        n_seen = self._control.flight.command_delay
         self._look_back()
-        times = self._times.quantiles()
-        return StationReport.of(n_seen, self._measurement_delay, times, self.warnings)
+        p50, p99, longest = self._times.quantiles() or (None, None, None)
+        return StationReport(
+            n_seen=self._control.flight.command_delay,
+            m_seen=self._measurement_delay,
+            tick_p50_s=p50,
+            tick_p99_s=p99,
+            tick_longest_s=longest,
+            warnings=self.warnings,
+            alarms=tuple(self._alarms.told),
+            alarms_raised=self._alarms.raised,
+            gated=self._alarms.gated(self._controller, self._control),
+        )
 
     def heartbeat(self) -> list[bytes]:
         """The frames that make the station known to the robot, and what it was told."""
@@ -207,6 +218,7 @@ class Station:
         self._look_back()
         self._first, self._tick = tick, None
         self._asked = Asked()
+        self._alarms.handed_over(self._controller, self._control)
         self._control, self._ahead = self._controller.start(), None
         self._joining = Rest() if tick > 0 and self._controller.kind.predicts else None
 
@@ -240,6 +252,7 @@ class Station:
             self._end_diverged(tick)
             return
         config = replace(self._config, initial_estimate=x, initial_covariance=P)
+        self._alarms.handed_over(self._controller, self._control)
         self._controller = self._make_controller(config)
         self._control = self._controller.start()
         self._first = self._tick = rest.tick
@@ -274,7 +287,8 @@ class Station:
         self._control = self._controller.answer(control, arrived, told, known)
         self._tick = tick
         asks = self._ask(tick - first) if arrived else []
-        self._answer = said(tick, self._control, self._peer, asks)
+        alarms = self._alarms.note(self._controller, self._control, tick)
+        self._answer = [*alarms, *said(tick, self._control, self._peer, asks)]
         self._unjudged = bool(arrived)
         x = self._control.estimate.x
         if x is not None and self._controller.diverged(x):

@@ -6,6 +6,8 @@ serve for the life cycle here; the rest calls the functions of the same library 
 
 import ctypes
 import os
+import secrets
+import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
@@ -197,17 +199,18 @@ def open_slave(path: Path, make: Callable[[str], Slave], stack: ExitStack) -> Sl
     Raises:
         CallError: it does not start.
     """
-    folder = tempfile.TemporaryDirectory(prefix="laglab-fmu-")
-    stack.callback(folder.cleanup)
+    folder = Path(tempfile.gettempdir(), f"laglab-fmu-{secrets.token_hex(8)}")
+    stack.callback(shutil.rmtree, folder, ignore_errors=True)
+    folder.mkdir(mode=0o700)  # after that, for an interrupt may come right now
     try:
-        fmpy.extract(path, folder.name, include=_is_needed)
-        slave = make(folder.name)
+        fmpy.extract(path, str(folder), include=_is_needed)
+        slave = make(str(folder))
     except Exception as error:  # fmpy raises nothing narrower
         raise CallError(f"{path} does not start ({error}); run `laglab fmu build`") from error
     stack.callback(slave.free)
     if os.name == "posix":
         # A loaded library needs its file no more, and a process that is killed cleans nothing up.
-        folder.cleanup()
+        shutil.rmtree(folder)
     return slave
 
 

@@ -21,6 +21,7 @@ from laglab_gateway.record.audit import Audit, DirectionAudit
 from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import RobotState, Services, safety_now
 from laglab_protocol import (
+    MAV_SEVERITY_WARNING,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
     STATION_COMPONENT,
@@ -53,7 +54,6 @@ def _is_meant(command: Command | Recall) -> bool:
     return target == (ROBOT_SYSTEM, ROBOT_COMPONENT)
 
 
-MAV_SEVERITY_WARNING = 4
 Cell = float | None
 
 
@@ -169,6 +169,9 @@ class RobotSide(ABC):
                 self._push(message)
             case Command() | Estimate():
                 pass  # said again, or of a tick that has not come
+            case Statustext():
+                if not self.answered:  # said again with a repeated answer, it is told once
+                    self.announce(message.text.decode(errors="replace"))
             case End():
                 self._take_end(message)
             case _:

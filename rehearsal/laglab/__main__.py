@@ -1,19 +1,21 @@
 """``laglab``, and ``python -m laglab``: Ctrl-C ends it in one line from the first moment on."""
 
+import signal
 import sys
 
-INTERRUPTED = 130
+from laglab.interrupts import leave, on_interrupt
 
 
 def main() -> None:
-    """Run the command; while it is still being loaded, too, an interrupt is no traceback."""
+    """Run the command."""
+    on_interrupt(leave)
     try:
         from laglab.command import run_command
 
         code = run_command(None)
     except KeyboardInterrupt:
-        print("laglab: interrupted", file=sys.stderr)
-        code = INTERRUPTED
+        leave()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # it is over: there is nothing left to interrupt
     sys.exit(code)
 
 

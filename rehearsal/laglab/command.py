@@ -21,7 +21,8 @@ from laglab.commands import (
 )
 from laglab.commands.group import group
 from laglab.errors import LaglabError, RunError, ScenarioError
-from laglab.output import guarded, prepare
+from laglab.interrupts import INTERRUPTED, on_interrupt
+from laglab.output import guarded
 from laglab.runs.errors import LINK_LOST, SIDE_ERRORS
 
 app = group("A rehearsal rig for robots controlled across a network.")
@@ -41,9 +42,6 @@ app.add_typer(protocol.app, name="protocol")
 app.command("conform")(protocol.conform)
 
 
-INTERRUPTED = 130
-
-
 def main(arguments: list[str] | None = None) -> None:
     """Run one command; whatever the user did wrong is one line on standard error."""
     sys.exit(run_command(arguments))
@@ -51,15 +49,12 @@ def main(arguments: list[str] | None = None) -> None:
 
 def run_command(arguments: list[str] | None) -> int:
     """The exit code of one command. SIGTERM and a terminal that closes end it as Ctrl-C does."""
-    prepare()
-    for name in ("SIGTERM", "SIGHUP"):
-        if number := getattr(signal, name, None):
-            signal.signal(number, signal.default_int_handler)
     return guarded(lambda: _exit_code(arguments))
 
 
 def _exit_code(arguments: list[str] | None) -> int:
     try:
+        on_interrupt(signal.default_int_handler)
         code = int(app(arguments, standalone_mode=False) or 0)
     except typer.TyperException as error:
         return _say(error.format_message(), error.exit_code)

@@ -1,43 +1,110 @@
-"""Standard output and error, whatever they are: another encoding, a closed pipe, a full disk."""
+"""Standard output and error, whatever they are: another encoding, closed, full, nobody reads."""
 
-import contextlib
+import codecs
 import io
 import os
 import sys
-from collections.abc import Callable
-from typing import TextIO
+import unicodedata
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
 
 READER_GONE = 141
 """Whoever read our output has gone away: as a shell says it of SIGPIPE."""
 CANNOT_WRITE = 4
-
-
-def prepare() -> None:
-    """From now on a character that the output's encoding lacks becomes a question mark."""
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")
+PLAIN = {"×": "x", "·": "*", "−": "-", "µ": "u", "μ": "u", "…": "...", "⋆": "*"}
+SPELLED_OUT = "laglab-spelled-out"
 
 
 def guarded(work: Callable[[], int]) -> int:
-    """The work's exit code; or that of its output, when that cannot be written."""
-    try:
+    """The work's exit code; where that is 0, the one that tells of output which was not written.
+
+    The work goes on to its end when nobody reads what it says.
+    """
+    _open_what_is_closed()
+    codecs.register_error(SPELLED_OUT, _spelled_out)
+    with _lasting("stdout") as output, _lasting("stderr") as errors:
         code = work()
-        sys.stdout.flush()
-    except BrokenPipeError:
-        _give_up(sys.stdout)
+    failure = output.failure or errors.failure
+    if code or failure is None:
+        return code
+    if isinstance(failure, BrokenPipeError):
         return READER_GONE
-    except OSError as error:
-        _give_up(sys.stdout)
-        with contextlib.suppress(OSError):
-            print(f"laglab: cannot write the output: {error.strerror}", file=sys.stderr)
-        return CANNOT_WRITE
-    return code
+    if not errors.failure:
+        print(f"laglab: cannot write the output: {failure.strerror}", file=sys.stderr)
+    return CANNOT_WRITE
 
 
-def _give_up(stream: TextIO) -> None:
-    """What is still in the stream's buffer must not fail again when Python ends."""
-    with contextlib.suppress(OSError, ValueError):
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, stream.fileno())
-        os.close(nowhere)
+def _open_what_is_closed() -> None:
+    """A descriptor that is closed would go to the next file opened, and get what we print."""
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: PTH123, SIM115
+
+
+class _Lasting(io.RawIOBase):
+    """Keeps the first failure to write; what is written from then on is dropped."""
+
+    def __init__(self, raw: io.RawIOBase | None) -> None:
+        self._raw = raw
+        self.failure: OSError | None = None
+
+    def write(self, data: "ReadableBuffer") -> int | None:
+        if self._raw and not self.failure:
+            try:
+                return self._raw.write(data)
+            except OSError as error:
+                self.failure = error
+        return memoryview(data).nbytes
+
+    def writable(self) -> bool:
+        return True
+
+    def fileno(self) -> int:
+        return self._raw.fileno() if self._raw else super().fileno()
+
+    def isatty(self) -> bool:
+        return self._raw is not None and self._raw.isatty()
+
+
+@contextmanager
+def _lasting(name: str) -> Iterator[_Lasting]:
+    """sys.stdout or sys.stderr, if it is one of the system's, made to last for a while."""
+    stream = getattr(sys, name)
+    buffer = getattr(stream, "buffer", None)
+    raw = getattr(buffer, "raw", buffer)
+    if not isinstance(stream, io.TextIOWrapper) or not isinstance(raw, io.RawIOBase):
+        yield _Lasting(None)
+        return
+    stream.flush()
+    lasting = _Lasting(raw)
+    wrapped = io.TextIOWrapper(
+        io.BufferedWriter(lasting),
+        stream.encoding,
+        errors=SPELLED_OUT,
+        line_buffering=stream.line_buffering,
+        write_through=stream.write_through,
+    )
+    setattr(sys, name, wrapped)
+    try:
+        yield lasting
+    finally:
+        wrapped.flush()
+        setattr(sys, name, stream)
+
+
+def _spelled_out(error: UnicodeError) -> tuple[str, int]:
+    """For what the encoding of the output does not have."""
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    return "".join(map(_plain, error.object[error.start : error.end])), error.end
+
+
+def _plain(character: str) -> str:
+    name = unicodedata.name(character, "")
+    if character in PLAIN or unicodedata.combining(character):
+        return PLAIN.get(character, "")
+    return name.split()[-1].lower() if name.startswith("GREEK") else "?"

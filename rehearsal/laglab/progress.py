@@ -1,13 +1,19 @@
-"""Progress of long work, on standard error."""
+"""Progress of long work, on standard error, where that is a terminal.
 
-from collections.abc import Callable, Iterator
+Shown when there is something new, not by a thread of its own: that would take the loop's time at
+any moment, and may hold a lock when Ctrl-C comes.
+"""
+
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from typing import TypeVar
 
 from rich.console import Console
 from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
     Progress,
+    ProgressColumn,
     TaskProgressColumn,
     TextColumn,
     TimeElapsedColumn,
@@ -15,26 +21,50 @@ from rich.progress import (
 
 from laglab.scenario import Scenario
 
-
-def progress_bar() -> Progress:
-    """Ticks done of ticks to do, if that is known."""
-    return Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TaskProgressColumn(text_format_no_percentage=""),
-        TextColumn("tick"),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        console=Console(stderr=True),
-    )
+T = TypeVar("T")
 
 
 @contextmanager
 def progress_of(scenario: Scenario, shown: bool = True) -> Iterator[Callable[[int], None]]:
     """Shows the ticks that it is told of, if `shown`."""
-    if not shown:
-        yield lambda _: None
-        return
-    with progress_bar() as bar:
+    with _bar("tick", shown) as bar:
         task = bar.add_task(scenario.name, total=scenario.last_tick)
-        yield lambda tick: bar.update(task, completed=tick)
+        yield lambda tick: bar.update(task, completed=tick, refresh=True)
+
+
+def tracked(work: Iterable[T], total: int, title: str, unit: str) -> Iterator[T]:
+    """The same, shown as it comes."""
+    with _bar(unit) as bar:
+        yield from bar.track(work, total=total, description=title)
+
+
+@contextmanager
+def status() -> Iterator[Callable[[str], None]]:
+    """Shows what is being done: the last that it was told. Gone at the end."""
+    with _shown(TextColumn("{task.description}", markup=False), transient=True) as line:
+        task = line.add_task("", total=None)
+        yield lambda text: line.update(task, description=text, refresh=True)
+
+
+def _bar(unit: str, shown: bool = True) -> Progress:
+    """So many done of so many to do, if that is known."""
+    return _shown(
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        TaskProgressColumn(text_format_no_percentage=""),
+        TextColumn(unit),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        shown=shown,
+    )
+
+
+def _shown(*columns: ProgressColumn, transient: bool = False, shown: bool = True) -> Progress:
+    console = Console(stderr=True)
+    return Progress(
+        *columns,
+        console=console,
+        auto_refresh=False,
+        transient=transient,
+        disable=not (shown and console.is_terminal),
+    )

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import laglab
-from laglab_control import Control, Controller, Echo, Measured, StationConfig
+from laglab_control import Applied, Control, Controller, Echo, Measured, StationConfig
 
 SEEDS = (1, 2, 3, 4)
 TICKS = 200
@@ -41,9 +41,13 @@ class Overheard(Controller):
     heard: list[Heard] = field(default_factory=list)
 
     def answer(
-        self, control: Control, measurements: Sequence[Measured], echoes: Sequence[Echo] = ()
+        self,
+        control: Control,
+        measurements: Sequence[Measured],
+        echoes: Sequence[Echo] = (),
+        recalled: Sequence[Applied] = (),
     ) -> Control:
-        control = super().answer(control, measurements, echoes)
+        control = super().answer(control, measurements, echoes, recalled)
         self.heard.append(Heard(measurements, control.estimate.x, control.estimate.P))
         return control
 

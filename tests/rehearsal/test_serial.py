@@ -50,7 +50,7 @@ def test_lockstep_across_a_line_of_57600_baud(start: Start, laglab: Laglab, tmp_
         assert side.returncode == 0
     line.send_signal(signal.SIGINT)
     report, _ = line.communicate(timeout=10)
-    assert line.returncode == 0
+    assert line.returncode == 130
     there, back = (int(found) for found in re.findall(r": (\d+) bytes$", report, re.MULTILINE))
     assert there > 0.9 * 41 * TICK_BYTES
     assert back > 0.9 * 41 * ANSWER_BYTES

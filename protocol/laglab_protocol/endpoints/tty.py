@@ -153,21 +153,24 @@ class Pty(_Tty):
 
     def __init__(self, path: str) -> None:
         link = Path(path)
-        _make_way(link)
-        master, self._slave = os.openpty()
-        # Raw, and one far descriptor kept open here: a cooked pty echoes, a hung-up one fails.
-        tty.setraw(self._slave)
-        self._device = os.ttyname(self._slave)
-        self._link: Path | None = link
+        self._link: Path | None = None
         try:
+            _make_way(link)
+            self._descriptor, self._slave = os.openpty()
+            self._link = link
+            # Raw, and one far descriptor kept open here: a cooked pty echoes, a hung-up one fails.
+            tty.setraw(self._slave)
+            self._device = os.ttyname(self._slave)
+            super().__init__(f"pty://{path}", self._descriptor)
             link.symlink_to(self._device)
         except OSError as error:
-            os.close(master)
-            os.close(self._slave)
+            self.close()
             raise NoSuchPortError(
                 f"pty://{path}: cannot make the link: {error.strerror}: choose another path"
             ) from error
-        super().__init__(f"pty://{path}", master)
+        except BaseException:
+            self.close()  # an interrupt may come at any moment
+            raise
 
     def reopen(self) -> None:
         return  # it is ours: its far end may come and go
@@ -176,7 +179,7 @@ class Pty(_Tty):
         if self._link is None:
             return
         # A later owner may have put its own link there.
-        with contextlib.suppress(FileNotFoundError):
+        with contextlib.suppress(OSError):
             if self._link.is_symlink() and str(self._link.readlink()) == self._device:
                 self._link.unlink()
         self._link = None

@@ -12,6 +12,7 @@ from laglab.bench import filter as filter_bench
 from laglab.bench.round_trip import Link
 from laglab.commands.group import group
 from laglab.extras import STEPPING, require
+from laglab.progress import status
 
 RoundsOption = Annotated[int, typer.Option("--rounds", min=1, help="Turns of each contender.")]
 JsonOption = Annotated[
@@ -74,8 +75,8 @@ def loop(
 
 
 def _run(what: bench.Bench, rounds: int, json: typer.FileTextWrite | None) -> None:
-    with Console(stderr=True).status(what.name) as status:
-        report = bench.run(what, rounds, status.update)
+    with status() as tell:
+        report = bench.run(what, rounds, tell)
     bench.show(report, Console())
     if json:
         json.write(report.to_json())

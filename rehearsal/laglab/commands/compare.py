@@ -19,5 +19,5 @@ def compare(
     """Draw several runs in one picture, a row each."""
     require(DRAWING)
     opened = [open_run(directory) for directory in runs]
-    save(draw_side_by_side([(run.drawn, run.scenario) for run in opened]), out)
+    save(draw_side_by_side([(run.drawn, run.scenario, run.alarms) for run in opened]), out)
     print(out)

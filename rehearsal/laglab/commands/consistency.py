@@ -10,10 +10,10 @@ from rich.console import Console
 from laglab.commands.options import on_scenario
 from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, require
-from laglab.progress import progress_bar
+from laglab.progress import tracked
 from laglab.results.figure import save
 from laglab.scenario import Scenario
-from laglab.studies.consistency import samples, verdict
+from laglab.studies.consistency import nth, samples, verdict
 from laglab.studies.consistency_report import consistency_table, draw_consistency
 from laglab_control import ESTIMATORS
 
@@ -40,9 +40,9 @@ def consistency(
     """
     require(REHEARSING)
     names = [_known(name) for name in judged or JUDGED]
-    with progress_bar() as bar:
-        runs = samples(scenario, names, seeds, workers or os.cpu_count() or 1)
-        got = list(bar.track(runs, total=seeds, description="seeds"))
+    nth(scenario, seeds - 1)  # is there such a seed?
+    runs = samples(scenario, names, seeds, workers or os.cpu_count() or 1)
+    got = list(tracked(runs, seeds, "consistency", "seed"))
     m = scenario.link.measurement_delay
     verdicts = [verdict(name, [sample[name] for sample in got], m) for name in names]
     console = Console()

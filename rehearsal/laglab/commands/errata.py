@@ -7,7 +7,7 @@ from rich.console import Console
 
 from laglab.commands.options import on_scenario
 from laglab.extras import STEPPING, require
-from laglab.progress import progress_bar
+from laglab.progress import tracked
 from laglab.scenario import Scenario
 from laglab.studies.errata import VARIANTS, costs, costs_table
 
@@ -22,10 +22,7 @@ def errata(
 ) -> None:
     """Run the paper's filter as printed beside the filter as corrected, one misprint at a time."""
     require(STEPPING)
-    rows = []
-    with progress_bar() as bar:
-        for cost in bar.track(costs(scenario, seeds), total=len(VARIANTS), description="errata"):
-            rows.append(cost)
+    rows = list(tracked(costs(scenario, seeds), len(VARIANTS), "errata", "version"))
     console = Console()
     console.width = max(console.width, TABLE_WIDTH)
     console.print(costs_table(scenario, rows), crop=False, markup=False)

@@ -4,11 +4,11 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 import laglab_fmu
 from laglab.commands.group import group
 from laglab.extras import STEPPING, require
+from laglab.progress import status
 
 app = group("The robot as an FMU.")
 
@@ -30,7 +30,8 @@ def build(
     """Build Robot2.fmu, Robot3.fmu and Fleet3.fmu, for this machine or for all."""
     require(STEPPING)
     folder = out or Path(laglab_fmu.__file__).parent
-    with Console(stderr=True).status("compiling"):
+    with status() as tell:
+        tell("compiling")
         built = laglab_fmu.build_fmus(folder, laglab_fmu.PLATFORMS if all_platforms else ())
     for path in built:
         print(path)

@@ -8,6 +8,7 @@ from rich.console import Console
 
 from laglab.commands.group import group
 from laglab.commands.run import KeyOption
+from laglab.progress import status
 from laglab_conformance import Pace, Side
 from laglab_conformance import conform as test_conformance
 from laglab_protocol import make_key
@@ -72,10 +73,8 @@ def conform(
         raise typer.BadParameter("a controller keeps no pace of its own: leave --pace out")
     console = Console(stderr=True)
     console.print(f"testing the {side} at {url}", highlight=False, soft_wrap=True)
-    with console.status("") as status:
-        report = test_conformance(
-            url, side, key, pace=pace or "lockstep", progress=lambda item: status.update(item)
-        )
+    with status() as tell:
+        report = test_conformance(url, side, key, pace=pace or "lockstep", progress=tell)
     print(report.table())
     if junit:
         junit.write_text(report.junit(), encoding="utf-8")

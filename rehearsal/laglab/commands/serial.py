@@ -1,6 +1,5 @@
 """``laglab serial``."""
 
-import signal
 from pathlib import Path
 from typing import Annotated
 
@@ -17,12 +16,11 @@ def serial(
     ] = 57600,
 ) -> None:
     """Make two serial ports joined by a cable, for any two programs, until Ctrl-C."""
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     with SerialPair(str(path_1), str(path_2), baud) as pair:
         typer.echo(f"{path_1} and {path_2} are joined at {baud} baud; Ctrl-C ends it", err=True)
         try:
             pair.carry()
-        except KeyboardInterrupt:
+        finally:
             for way, names in zip(pair.lanes, ((path_1, path_2), (path_2, path_1)), strict=True):
                 typer.echo(_report(*names, way.carried, way.overrun))
 

@@ -19,15 +19,18 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from io import FileIO
 from queue import Queue
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, NoReturn
 
 import msgspec
 from msgspec import Struct
 
+from laglab.interrupts import INTERRUPTED, on_interrupt
 from laglab.runs.reports import Ended, Report
 
 LAST_CHANCE = 2.0
 """[s] A child that was asked to end is ended after so long."""
+LOOK_UP = 0.5
+"""[s] So often a wait for reports looks up: not every system lets a Ctrl-C through it."""
 
 Tell = Callable[[Report], None]
 
@@ -106,21 +109,32 @@ def _how_it_ended(exit_code: int) -> str:
 
 def main(target: str) -> None:
     """In the child: call the function with the order that comes in."""
+    signal.signal(signal.SIGINT, _leave)  # whatever our parent's parent had it ignore
+    on_interrupt(_leave)
     with FileIO(os.dup(1), "wb") as out:
         os.dup2(2, 1)  # an FMU that prints must not disturb the reports
-        module, _, name = target.partition(":")
-        function: Callable[[Any, Tell], None] = getattr(importlib.import_module(module), name)
         order = _first_line()
         threading.Thread(target=_end_with_our_parent, daemon=True).start()
+        module, _, name = target.partition(":")
+        function: Callable[[Any, Tell], None] = getattr(importlib.import_module(module), name)
+        on_interrupt(signal.default_int_handler)
         function(_order_of(function, order), lambda report: _tell(out, report))
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        on_interrupt(_leave)
+
+
+def _leave(*_: object) -> NoReturn:
+    """At once: there is nothing to end in order yet, or any more."""
+    os._exit(INTERRUPTED)
 
 
 def _first_line() -> bytes:
     """Of standard input; read without a buffer, whose lock would outlive us at our end."""
     line = b""
     while not line.endswith(b"\n"):
-        line += os.read(0, 1 << 16) or b"\n"
+        piece = os.read(0, 1 << 16)
+        if not piece:
+            _leave()  # our parent is gone
+        line += piece
     return line
 
 
@@ -132,8 +146,10 @@ def _order_of(function: Callable[[Any, Tell], None], order: bytes) -> Struct:
 
 
 def _tell(out: FileIO, report: Report) -> None:
+    line = memoryview(msgspec.json.encode(report) + b"\n")
     try:
-        out.write(msgspec.json.encode(report) + b"\n")
+        while line:
+            line = line[out.write(line) :]
     except BrokenPipeError:
         raise KeyboardInterrupt from None  # nobody waits for us any more
 
@@ -145,8 +161,7 @@ def _end_with_our_parent() -> None:
 
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         main(sys.argv[1])
     except KeyboardInterrupt:
-        sys.exit(130)
+        _leave()

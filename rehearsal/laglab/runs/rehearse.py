@@ -2,14 +2,14 @@
 
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from queue import Empty, Queue
 from time import monotonic
 from typing import Literal
 
-from laglab.runs.child import Child, Inbox, started
+from laglab.runs.child import LOOK_UP, Child, Inbox, Letter, started
 from laglab.runs.clock import LoopClock
 from laglab.runs.ending import Ending
 from laglab.runs.errors import LINK_LOST, SIDE_ERRORS
@@ -37,8 +37,8 @@ MakeController = Callable[[StationConfig], Controller]
 
 NOTICE_SECONDS = 1.0
 """What a gateway needs, besides the silence timeout, to say that its station is silent."""
-LOOK_UP = 0.5
-"""[s] So often a wait for reports looks up: not every system lets a Ctrl-C through it."""
+GOODBYE_SECONDS = 0.5
+"""What a station needs for its last words when a gateway has ended in order."""
 
 
 def unheard(_: object) -> None:
@@ -144,36 +144,39 @@ class _Rehearsal:
         order = Order(self._scenario.to_toml(), far_end(address), key=self._key)
         with started("controller", "laglab.runs.sides:station_side", order, self._inbox):
             try:
-                self._read_on()
+                self._read_on(self._scenario.silence_timeout + NOTICE_SECONDS)
             except KeyboardInterrupt:
                 self._gateway.stop()
-                self._read_on()
+                self._read_on(GOODBYE_SECONDS)
         return self._summed_up()
 
     def _first_address(self) -> str | None:
         while not self._over:
-            _, report = self._inbox.get()
-            if isinstance(report, Listening):
-                return report.address
-            self._take_of_gateway(report)
+            match self._next_letter():
+                case _, Listening(address):
+                    return address
+                case _, report:
+                    self._take_of_gateway(report)
         return None
 
-    def _read_on(self) -> None:
-        """A side whose far end is gone gets a while to find and say so, and no more."""
+    def _next_letter(self) -> Letter | None:
+        with suppress(Empty):
+            return self._inbox.get(timeout=LOOK_UP)
+        return None
+
+    def _read_on(self, patience: float) -> None:
+        """A side whose far end is gone gets so long [s] to find and say so, and no longer."""
         deadline = None
         while not (self._over and self._station_over):
             if deadline is None and (self._over or self._station_over):
-                deadline = monotonic() + self._scenario.silence_timeout + NOTICE_SECONDS
+                deadline = monotonic() + patience
             if deadline is not None and monotonic() > deadline:
                 return
-            try:
-                sender, report = self._inbox.get(timeout=LOOK_UP)
-            except Empty:
-                continue
-            if sender is self._gateway:
-                self._take_of_gateway(report)
-            else:
-                self._take_of_station(report)
+            match self._next_letter():
+                case sender, report if sender is self._gateway:
+                    self._take_of_gateway(report)
+                case _, report:
+                    self._take_of_station(report)
 
     def _take_of_gateway(self, report: object) -> None:
         ending = self._ending

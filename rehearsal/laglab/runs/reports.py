@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from msgspec import Meta, Struct
+from msgspec import Meta, Raw, Struct
 
 from laglab_gateway import LinkReport, TimingReport
 from laglab_station import StationReport
@@ -63,10 +63,17 @@ class Failed(Struct, frozen=True, tag=True):
     """Whether the run had begun: what was wrong before is for the user to mend."""
 
 
+class Computed(Struct, frozen=True, tag=True):
+    """One of the jobs is done."""
+
+    number: int
+    answer: Raw
+
+
 class Ended(Struct, frozen=True, tag=True):
     """The process is gone, and how; always the last that is heard of it."""
 
     how: str
 
 
-Report = Listening | Progress | Warned | Finished | Answered | Failed | Ended
+Report = Listening | Progress | Warned | Finished | Answered | Failed | Computed | Ended

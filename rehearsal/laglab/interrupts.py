@@ -1,0 +1,25 @@
+"""What ends a process from outside: Ctrl-C, SIGTERM, and a terminal that closes."""
+
+import os
+import signal
+from collections.abc import Callable
+from contextlib import suppress
+from typing import NoReturn
+
+INTERRUPTED = 130
+
+
+def on_interrupt(handler: Callable[..., object]) -> None:
+    """Call the handler from now on; what whoever started us had us ignore stays ignored."""
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)
+        if number and signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, handler)
+
+
+def leave(*_: object) -> NoReturn:
+    """At once, while there is nothing to end in order. No exception: the loading of modules runs
+    code through which none passes."""
+    with suppress(OSError):
+        os.write(2, b"laglab: interrupted\n")
+    os._exit(INTERRUPTED)

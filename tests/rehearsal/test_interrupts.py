@@ -1,0 +1,129 @@
+"""Ctrl-C at any moment: one line, exit 130, and nothing is left: no process, folder or port."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import uuid
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+LONG = ("lab", "--duration", "3600")
+COMMANDS = {
+    "inline": ("run", *LONG, "--transport", "inline"),
+    "udp": ("run", *LONG),
+    "serial": ("run", *LONG, "--transport", "serial"),
+    "gateway": ("gateway", *LONG, "--endpoint", "pty://port"),
+    "controller": ("controller", *LONG, "--endpoint", "udpout://127.0.0.1:9"),
+    "consistency": ("consistency", "lab", "--seeds", "1000"),
+    "errata": ("errata", "fig8", "--seeds", "1000"),
+    "bench": ("bench", "loop", "--rounds", "100"),
+    "conform": ("conform", "udpin://127.0.0.1:0", "--side", "robot"),
+    "cable": ("serial", "port-1", "port-2"),
+}
+OBEYED_WITHIN = 5.0
+
+
+class Started:
+    """`laglab ARGUMENTS` in a process group of its own, as a shell starts it, and all that comes of
+    it: whatever it starts has the same mark in its environment."""
+
+    def __init__(self, arguments: tuple[str, ...], folder: Path) -> None:
+        self._mark = uuid.uuid4().hex
+        self._folder = folder
+        self._temporary = Path(tempfile.mkdtemp(dir=folder))
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "laglab", *arguments],
+            cwd=folder,
+            env=os.environ | {"LAGLAB_TEST": self._mark, "TMPDIR": str(self._temporary)},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+
+    def wait_until_it_loads(self) -> None:
+        """Modules of others: whatever comes before is Python's own start."""
+        while "site-packages" not in Path(f"/proc/{self.process.pid}/maps").read_text():
+            time.sleep(0.002)
+
+    def all_processes(self) -> list[int]:
+        found = []
+        for folder in Path("/proc").glob("[0-9]*"):
+            try:
+                marked = self._mark.encode() in (folder / "environ").read_bytes()
+            except OSError:
+                continue  # it has just ended, or is somebody else's
+            if marked:
+                found.append(int(folder.name))
+        return found
+
+    def left_behind(self) -> list[str]:
+        """Temporary files and ports."""
+        ports = [path for path in self._folder.rglob("*") if path.is_symlink()]
+        return [str(path) for path in [*self._temporary.iterdir(), *ports]]
+
+
+@pytest.fixture
+def started(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Started]:
+    started = Started(COMMANDS[request.param], tmp_path)
+    yield started
+    for number in started.all_processes():
+        os.kill(number, signal.SIGKILL)
+    started.process.communicate()
+
+
+@pytest.mark.parametrize("started", COMMANDS, indirect=True)
+@pytest.mark.parametrize("within", [(0.0, 0.4), (0.4, 2.5)], ids=["loading", "working"])
+def test_ctrl_c(started: Started, within: tuple[float, float]) -> None:
+    """At a random moment, to the whole group, as a terminal does it."""
+    started.wait_until_it_loads()
+    time.sleep(random.uniform(*within))
+    os.killpg(started.process.pid, signal.SIGINT)
+    _, errors = started.process.communicate(timeout=OBEYED_WITHIN)
+    assert started.process.returncode == 130, errors
+    *before, last = errors.splitlines()
+    assert last == "laglab: interrupted"
+    assert not [line for line in before if "Traceback" in line or line.startswith("laglab:")]
+    assert not started.all_processes()
+    assert not started.left_behind()
+
+
+@pytest.mark.parametrize("started", ["udp", "consistency"], indirect=True)
+def test_nothing_goes_on_when_we_are_killed(started: Started) -> None:
+    deadline = time.monotonic() + 20
+    while len(started.all_processes()) < 3:
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    time.sleep(random.uniform(0.0, 1.5))
+    started.process.kill()
+    _, errors = started.process.communicate(timeout=20)
+    deadline = time.monotonic() + OBEYED_WITHIN
+    while started.all_processes():
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    assert "Traceback" not in errors
+
+
+@pytest.mark.parametrize("ignored", ["INT", "HUP"])
+def test_what_we_were_started_to_ignore_stays_ignored(ignored: str, tmp_path: Path) -> None:
+    """By `nohup`, or by a shell that starts us in the background."""
+    script = f'trap "" {ignored}; exec "$@"'
+    laglab = (sys.executable, "-m", "laglab", "gateway", "lab", "--endpoint", "udpin://127.0.0.1:0")
+    process = subprocess.Popen(
+        ["sh", "-c", script, "sh", *laglab], cwd=tmp_path, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stderr is not None
+    assert process.stderr.readline().startswith("listening")
+    process.send_signal(signal.Signals[f"SIG{ignored}"])
+    with pytest.raises(subprocess.TimeoutExpired):
+        process.wait(0.5)
+    process.terminate()
+    _, errors = process.communicate(timeout=10)
+    assert process.returncode == 130
+    assert errors.splitlines()[-1] == "laglab: interrupted"
