@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from laglab_control.doubt import doubt
 from laglab_control.errors import ConfigError
 from laglab_control.estimators.family import EstimatorKind, estimator_kind
-from laglab_control.estimators.interface import Applied, Estimator, Measured, State
+from laglab_control.estimators.interface import Applied, Calibration, Estimator, Measured, State
 from laglab_control.estimators.kalman import Belief, Innovation
 from laglab_control.flight import Echo, Flight, hear, send, take_off
 from laglab_control.guard import Alarm, Guard, Watched
@@ -184,6 +184,10 @@ class Controller:
         for u in flight.in_flight if self.kind.predicts else ():
             x, P = self.config.model.predict(x, P, u)
         return Belief(np.array(pose), P)
+
+    def learned(self, control: Control) -> tuple[Calibration, ...]:
+        """What the estimator has learned of the robot besides its pose."""
+        return self._estimator.learned(control.estimate)
 
     def alarm(self, control: Control) -> Alarm | None:
         """What the guard has found at this tick."""

@@ -31,6 +31,7 @@ TICKS = 120
 class GyroBias:
     """b = [omega_0]: the robot turns, whatever it is told, by so much more [rad/s]."""
 
+    names: tuple[str] = ("gyro bias",)
     deviations: tuple[float] = (0.3,)
 
     def taken(self, u, b):
@@ -216,10 +217,12 @@ def kept_run(scenario, estimator, overrides):
 
 @pytest.mark.parametrize("error", [0.1, -0.1])
 def test_wheels_that_are_not_as_believed_are_found_out(error):
-    run, controller = kept_run("lab", "calibrating-ekf", {"plant.wheel_radius_error": error})
+    overrides = {"plant.wheel_radius_error": error, "estimator.guard": True}
+    run, _ = kept_run("lab", "calibrating-ekf", overrides)
     assert run.summary.converged
-    scales, P = controller.kept[-1].estimate.parameters
-    assert np.all(np.abs(scales - error) < 4 * np.sqrt(np.diag(P)))
+    found = run.summary.station.calibration
+    assert [each.name for each in found] == ["left wheel", "right wheel"]
+    assert all(abs(each.value - error) < 4 * each.deviation < 0.12 for each in found)
 
 
 @pytest.mark.parametrize("error", [0.1, -0.1])

@@ -4,7 +4,7 @@ from laglab_control.estimators.calibrating_ekf import CalibratingEkf
 from laglab_control.estimators.delayed_ekf import DelayedEkf
 from laglab_control.estimators.ekf import Ekf
 from laglab_control.estimators.family import ESTIMATORS, EstimatorKind, estimator_kind
-from laglab_control.estimators.interface import Applied, Estimator, Measured, State
+from laglab_control.estimators.interface import Applied, Calibration, Estimator, Measured, State
 from laglab_control.estimators.kalman import Innovation
 from laglab_control.estimators.parameters import Parameters, Taken
 from laglab_control.estimators.popf import Popf
@@ -18,6 +18,7 @@ __all__ = [
     "ESTIMATORS",
     "Applied",
     "CalibratingEkf",
+    "Calibration",
     "DelayedEkf",
     "Ekf",
     "Estimator",

@@ -9,7 +9,7 @@ import numpy as np
 
 from laglab_control.estimators.calibrated import CalibratedMotions, CalibratedRobot, Learned
 from laglab_control.estimators.delayed_ekf import DelayedEkf, DelayedState
-from laglab_control.estimators.interface import Applied, Estimator, Measured
+from laglab_control.estimators.interface import Applied, Calibration, Estimator, Measured
 from laglab_control.estimators.kalman import Belief, Innovation
 from laglab_control.estimators.parameters import Parameters
 from laglab_control.model import Matrix, Vector
@@ -87,6 +87,15 @@ class CalibratingEkf(Estimator[CalibratingState]):
     def calibrated(self, state: CalibratingState, robot: Ways) -> Ways:
         """The robot with b as it is known by now, to `tolerance`."""
         return state.motions
+
+    def learned(self, state: CalibratingState) -> tuple[Calibration, ...]:
+        """Each b."""
+        b, P = state.parameters
+        known = zip(b.tolist(), np.sqrt(np.diag(P)).tolist(), strict=True)
+        return tuple(
+            Calibration(name, *each)
+            for name, each in zip(self.parameters.names, known, strict=True)
+        )
 
     @cached_property
     def model(self) -> CalibratedRobot:

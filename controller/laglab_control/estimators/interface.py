@@ -23,6 +23,15 @@ class Measured(NamedTuple):
     z: Vector
 
 
+class Calibration(NamedTuple):
+    """What is known of one parameter of the robot."""
+
+    name: str
+    value: float
+    deviation: float
+    """Standard deviation."""
+
+
 def by_sampling(measurements: Sequence[Measured], k: int) -> Sequence[Measured]:
     """Oldest first. Raises StampError unless all were sampled at ticks 0 ... k."""
     if len(measurements) > 1:
@@ -95,6 +104,10 @@ class Estimator(Protocol[S]):
     def calibrated(self, state: S, robot: Ways) -> Ways:
         """The robot as it is known by now: the one that was told, of those that learn nothing."""
         return robot
+
+    def learned(self, state: S) -> tuple[Calibration, ...]:
+        """What is known by now of the robot besides its pose; of most estimators nothing."""
+        return ()
 
     def innovation(self, state: S) -> Innovation | None:
         """Of the newest measurement that the last `correct` was given, as the estimator saw it;

@@ -19,6 +19,11 @@ class Parameters(Protocol):
     """b (p,): what makes the robot another than its model, all 0 where nothing does."""
 
     @property
+    def names(self) -> Sequence[str]:
+        """What each is called."""
+        ...
+
+    @property
     def deviations(self) -> Sequence[float]:
         """How far from 0 each is expected at first: standard deviations (p,)."""
         ...

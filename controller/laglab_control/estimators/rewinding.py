@@ -8,7 +8,6 @@ from laglab_control.estimators.interface import Applied, Estimator, Measured, St
 from laglab_control.estimators.kalman import Innovation
 from laglab_control.model import Matrix, Vector
 from laglab_control.past.log import Log, append, cut, logged
-from laglab_control.robot import Ways
 
 S = TypeVar("S", bound=State)
 
@@ -46,7 +45,7 @@ class RewindingState(NamedTuple, Generic[S]):
 
 
 @dataclass(frozen=True)
-class Rewinding(Generic[S]):
+class Rewinding(Estimator[RewindingState[S]]):
     """Goes back to the first input that was wrong, and runs `estimator` again from there.
 
     The answer is that of an estimator that had known the inputs, and got its measurements when
@@ -87,10 +86,6 @@ class Rewinding(Generic[S]):
     def restart(self, state: RewindingState[S], x: Vector, P: Matrix) -> RewindingState[S]:
         """The estimator's own."""
         return RewindingState(self.estimator.restart(state.state, x, P), (), logged())
-
-    def calibrated(self, state: RewindingState[S], robot: Ways) -> Ways:
-        """The estimator's own."""
-        return self.estimator.calibrated(state.state, robot)
 
     def innovation(self, state: RewindingState[S]) -> Innovation | None:
         """The estimator's own."""

@@ -22,6 +22,11 @@ class WheelScales:
     """By how much each changes on 1 m [m^-1/2], as a standard deviation."""
 
     @property
+    def names(self) -> tuple[str, str]:
+        """As they stand in b."""
+        return "left wheel", "right wheel"
+
+    @property
     def deviations(self) -> tuple[float, float]:
         """Of both the same."""
         return self.deviation, self.deviation

@@ -10,7 +10,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from laglab_control.estimators.delayed_ekf import DelayedEkf, DelayedState
-from laglab_control.estimators.interface import Applied, Estimator, Measured, State, by_sampling
+from laglab_control.estimators.interface import (
+    Applied,
+    Calibration,
+    Estimator,
+    Measured,
+    State,
+    by_sampling,
+)
 from laglab_control.estimators.kalman import Belief, Innovation, normalised_squared
 from laglab_control.estimators.windows import RigidMotions
 from laglab_control.guard.evidence import WILD, Evidence, contradiction, no_evidence, weighed
@@ -123,8 +130,11 @@ class Guard(Estimator[Watched]):
 
     def calibrated(self, state: Watched, robot: Ways) -> Ways:
         """The estimator's own, also while it is given up."""
-        known = state.state if state.aside is None else state.aside
-        return self.estimator.calibrated(known, robot)
+        return self.estimator.calibrated(_own(state), robot)
+
+    def learned(self, state: Watched) -> tuple[Calibration, ...]:
+        """The estimator's own, also while it is given up."""
+        return self.estimator.learned(_own(state))
 
     def innovation(self, state: Watched) -> Innovation | None:
         """The estimator's own."""
@@ -215,3 +225,8 @@ class Guard(Estimator[Watched]):
         for u in items[length - (tick - origin) : length]:
             inner = active.predict(inner, u)
         return state._replace(state=inner, origin=origin)
+
+
+def _own(state: Watched) -> State:
+    """The estimator's, as of now or of when it was given up."""
+    return state.state if state.aside is None else state.aside
