@@ -18,6 +18,7 @@ from laglab.commands import (
     scenarios,
     serial,
     sides,
+    trust,
 )
 from laglab.commands.group import group
 from laglab.errors import LaglabError, RunError, ScenarioError
@@ -32,6 +33,7 @@ app.command("scenarios")(scenarios.scenarios)
 app.command("scenario")(scenario.scenario)
 app.command("compare")(compare.compare)
 app.command("consistency")(consistency.consistency)
+app.command("trust")(trust.trust)
 app.command("errata")(errata.errata)
 app.command("gateway")(sides.gateway)
 app.command("controller")(sides.controller)
