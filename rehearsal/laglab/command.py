@@ -64,9 +64,16 @@ def _exit_code(arguments: list[str] | None) -> int:
         return _say(str(error), RunError.exit_code)
     except SIDE_ERRORS as error:
         return _say(str(error), ScenarioError.exit_code)
+    except OSError as error:
+        return _say(_of_the_system(error), RunError.exit_code)
     except (typer.Abort, KeyboardInterrupt):
         code = INTERRUPTED
     return _say("interrupted", code) if code == INTERRUPTED else code
+
+
+def _of_the_system(error: OSError) -> str:
+    """What a disk or a library said, where nobody had a better word for it."""
+    return f"{error.filename}: {error.strerror}" if error.filename else str(error)
 
 
 def _say(text: str, exit_code: int) -> int:

@@ -1,6 +1,7 @@
 """`laglab bench`: ratios, measured side by side in one run."""
 
 from contextlib import ExitStack
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -13,17 +14,13 @@ from laglab.bench.round_trip import Link
 from laglab.commands.group import group
 from laglab.extras import STEPPING, require
 from laglab.progress import status
+from laglab.results.whole import whole_file
+from laglab.results.writable import file_place
 
 RoundsOption = Annotated[int, typer.Option("--rounds", min=1, help="Turns of each contender.")]
 JsonOption = Annotated[
-    typer.FileTextWrite | None,
-    typer.Option(
-        "--json",
-        metavar="FILE",
-        encoding="utf-8",
-        lazy=False,
-        help="Write what was measured here too.",
-    ),
+    Path | None,
+    typer.Option("--json", metavar="FILE", help="Write what was measured here too."),
 ]
 TicksOption = Annotated[int, typer.Option("--ticks", min=10, help="Ticks of each turn.")]
 
@@ -74,9 +71,12 @@ def loop(
     _run(loop_bench.bench(ticks, realtime, links), rounds, json)
 
 
-def _run(what: bench.Bench, rounds: int, json: typer.FileTextWrite | None) -> None:
+def _run(what: bench.Bench, rounds: int, json: Path | None) -> None:
+    if json:
+        file_place("--json", json)
     with status() as tell:
         report = bench.run(what, rounds, tell)
     bench.show(report, Console())
     if json:
-        json.write(report.to_json())
+        with whole_file(json) as file:
+            file.write(report.to_json().encode())

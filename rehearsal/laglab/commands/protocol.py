@@ -9,9 +9,11 @@ from rich.console import Console
 from laglab.commands.group import group
 from laglab.commands.run import KeyOption
 from laglab.progress import status
+from laglab.results.whole import whole_file
+from laglab.results.writable import file_place, folder_place
 from laglab_conformance import Pace, Side
 from laglab_conformance import conform as test_conformance
-from laglab_protocol import make_key
+from laglab_protocol import make_key, read_key
 from laglab_protocol.dialect.lint import lint as find_faults
 from laglab_protocol.dialect.mavgen import LANGUAGES, dialect_path, generate_into
 
@@ -44,7 +46,7 @@ def generate(
     dialect: DialectOption = None,
 ) -> None:
     """Generate code for firmware (C), programs (Python3), or a dissector for Wireshark (WLua)."""
-    print(generate_into(lang, directory, dialect))
+    print(generate_into(lang, folder_place("DIR", directory), dialect))
 
 
 @app.command()
@@ -71,11 +73,16 @@ def conform(
     """Test whether the robot, or the controller, at URL speaks the protocol; ends its run."""
     if side == "controller" and pace:
         raise typer.BadParameter("a controller keeps no pace of its own: leave --pace out")
+    if key:
+        read_key(key)
+    if junit:
+        file_place("--junit", junit)
     console = Console(stderr=True)
     console.print(f"testing the {side} at {url}", highlight=False, soft_wrap=True)
     with status() as tell:
         report = test_conformance(url, side, key, pace=pace or "lockstep", progress=tell)
     print(report.table())
     if junit:
-        junit.write_text(report.junit(), encoding="utf-8")
+        with whole_file(junit) as file:
+            file.write(report.junit().encode())
     raise typer.Exit(0 if report.conforms else 1)

@@ -9,10 +9,10 @@ from rich.console import Console
 from laglab.errors import ScenarioError
 from laglab.extras import DRAWING, require
 from laglab.results.figure import save
-from laglab.results.place import made
 from laglab.results.replaying import draw_replays, replays_table
 from laglab.results.run import SCENARIO_FILE
 from laglab.results.shadows import collected, kept_rows, shadow_rows
+from laglab.results.writable import folder_place
 from laglab.scenario import load
 from laglab_gateway import TRACE_FILE, read_trace
 from laglab_station import read_session
@@ -52,7 +52,7 @@ def replay(
     trace_file = tlog.parent / TRACE_FILE
     trace = read_trace(trace_file) if trace_file.exists() else None
     asked = {name: shadow_rows(told, name, session) for name in estimators}
-    directory = made(out)
+    directory = folder_place("--out", out)
     replays = {
         name: collected(kept_rows(rows, directory / f"{name}.csv")) for name, rows in asked.items()
     }
