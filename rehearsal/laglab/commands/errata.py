@@ -1,5 +1,6 @@
 """``laglab errata``."""
 
+from functools import partial
 from typing import Annotated
 
 import typer
@@ -15,13 +16,14 @@ TABLE_WIDTH = 104
 """Columns: a narrower terminal shows the table wrapped, but whole."""
 
 
-@on_scenario
+@partial(on_scenario, by_default="fig8")
 def errata(
     scenario: Scenario,
     seeds: Annotated[int, typer.Option(min=1, help="Runs with noise, for each version.")] = 5,
 ) -> None:
     """Run the paper's filter as printed beside the filter as corrected, one misprint at a time."""
     require(STEPPING)
+    scenario.must_end()
     rows = list(tracked(costs(scenario, seeds), len(VARIANTS), "errata", "version"))
     console = Console()
     console.width = max(console.width, TABLE_WIDTH)

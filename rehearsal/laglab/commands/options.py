@@ -82,10 +82,10 @@ def _parameter(key: str) -> str:
     return key.replace(".", "_")
 
 
-def _parameters() -> Iterator[inspect.Parameter]:
+def _parameters(by_default: object) -> Iterator[inspect.Parameter]:
     """SCENARIO, and the options that override it."""
     keyword = inspect.Parameter.KEYWORD_ONLY
-    yield inspect.Parameter("scenario", keyword, annotation=ScenarioArgument)
+    yield inspect.Parameter("scenario", keyword, default=by_default, annotation=ScenarioArgument)
     for name, hint in OF_SEVERAL_KEYS.items():
         yield inspect.Parameter(name, keyword, default=None, annotation=hint)
     said = {row.place: row.key for row in rows()}
@@ -96,8 +96,13 @@ def _parameters() -> Iterator[inspect.Parameter]:
         yield inspect.Parameter(_parameter(key), keyword, default=option, annotation=own.type)
 
 
-def on_scenario(command: Callable[..., None]) -> Callable[..., None]:
-    """Give ``command(scenario, …)`` the SCENARIO argument and the options that override it."""
+def on_scenario(
+    command: Callable[..., None], by_default: object = inspect.Parameter.empty
+) -> Callable[..., None]:
+    """Give ``command(scenario, …)`` the SCENARIO argument and the options that override it.
+
+    `by_default` is the SCENARIO where none is named, if that is allowed.
+    """
     own = list(inspect.signature(command).parameters.values())[1:]
 
     def wrapper(scenario: str, **options: Any) -> None:
@@ -105,7 +110,7 @@ def on_scenario(command: Callable[..., None]) -> Callable[..., None]:
         command(load(scenario, overrides, lambda text: typer.echo(text, err=True)), **options)
 
     keyword = inspect.Parameter.KEYWORD_ONLY
-    parameters = [*_parameters(), *(each.replace(kind=keyword) for each in own)]
+    parameters = [*_parameters(by_default), *(each.replace(kind=keyword) for each in own)]
     wrapper.__name__ = command.__name__
     wrapper.__doc__ = command.__doc__
     wrapper.__annotations__ = {item.name: item.annotation for item in parameters}

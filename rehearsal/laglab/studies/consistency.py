@@ -63,14 +63,14 @@ class Verdict(NamedTuple):
 
     def mean(self, values: Array) -> float:
         """Over the ticks >= m."""
-        return float(np.nanmean(values[self.measurement_delay :]))
+        return float(mean_of_known(values[self.measurement_delay :]))
 
     def inside(self, values: Array) -> float:
         """The share of the ticks >= m at which an average is within the bounds."""
         low, high = self.bounds
         settled = values[self.measurement_delay :]
-        settled = settled[~np.isnan(settled)]
-        return float(np.mean((low <= settled) & (settled <= high)))
+        within = (low <= settled) & (settled <= high)
+        return float(mean_of_known(np.where(np.isnan(settled), np.nan, within)))
 
     @property
     def consistent(self) -> bool:
@@ -149,11 +149,11 @@ def verdict(name: str, of_seeds: Sequence[Sample], measurement_delay: int) -> Ve
     alive = ~np.isnan(error[:, settled, 0])
     return Verdict(
         name,
-        nees=_mean_over_seeds(nees),
-        nis=_mean_over_seeds(nis),
-        claimed=np.sqrt(np.maximum(_mean_over_seeds(variances), 0)),
-        true=np.sqrt(_mean_over_seeds(error**2)),
-        indefinite=float(np.mean(np.isnan(nees[:, settled])[alive])),
+        nees=mean_of_known(nees),
+        nis=mean_of_known(nis),
+        claimed=np.sqrt(np.maximum(mean_of_known(variances), 0)),
+        true=np.sqrt(mean_of_known(error**2)),
+        indefinite=float(mean_of_known(np.isnan(nees[:, settled])[alive].astype(np.float64))),
         diverged=int(np.sum(np.isnan(error[:, -1, 0]))),
         bounds=chi_square_bounds(len(of_seeds)),
         measurement_delay=measurement_delay,
@@ -165,8 +165,8 @@ def _padded(values: Array, length: int) -> Array:
     return np.concatenate((values, missing))
 
 
-def _mean_over_seeds(values: Array) -> Array:
-    """NaN where no seed has a value."""
+def mean_of_known(values: Array) -> Array:
+    """Along the first axis; NaN where there is no value."""
     there = ~np.isnan(values)
     with np.errstate(invalid="ignore", over="ignore"):
         mean: Array = np.where(there, values, 0).sum(axis=0) / there.sum(axis=0)

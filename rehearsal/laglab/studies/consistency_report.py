@@ -11,7 +11,7 @@ from rich.table import Table
 
 from laglab.results.figure import empty_figure
 from laglab.scenario import Scenario
-from laglab.studies.consistency import Verdict
+from laglab.studies.consistency import Verdict, mean_of_known
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -41,7 +41,7 @@ def consistency_table(scenario: Scenario, verdicts: Sequence[Verdict], seeds: in
 def _cells(verdict: Verdict) -> list[str]:
     m = verdict.measurement_delay
     claimed, true = (
-        np.sqrt(np.nanmean(values[m:] ** 2, axis=0)) for values in (verdict.claimed, verdict.true)
+        np.sqrt(mean_of_known(values[m:] ** 2)) for values in (verdict.claimed, verdict.true)
     )
     return [
         f"{verdict.mean(verdict.nees):.2f}",
