@@ -1,7 +1,7 @@
 """`laglab gateway` and `laglab controller`: one side alone."""
 
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import Annotated
 
 import typer
@@ -74,10 +74,10 @@ def gateway(
         directory = place(scenario, out, force)
         for each in (link, *watched):
             _say(f"listening on {each.name}")
-        with closing(FileRecorder(directory)) as recorder, progress_of(scenario) as told:
+        with progress_of(scenario) as told:
             around = Surroundings(
                 Listener(link, robot.codec.receiver),
-                recorder,
+                FileRecorder(directory),
                 Patience(silence=scenario.silence_timeout),
                 robot.watch(watched),
                 told,
@@ -110,7 +110,6 @@ def controller(
         _say(f"calling {link.name}: waiting for the robot")
         with progress_of(scenario) as told:
             record = StationRecord(directory, scenario.sample_time, _warn, told)
-            with closing(record):
-                listener = Listener(link, receiver)
-                ending = answer_alone(station, listener, scenario.silence_timeout, record)
+            listener = Listener(link, receiver)
+            ending = answer_alone(station, listener, scenario.silence_timeout, record)
     conclude(scenario, Way("station", link.name, "unknown"), ending, directory)
