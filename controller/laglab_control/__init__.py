@@ -30,6 +30,7 @@ from laglab_control.estimators import (
     State,
 )
 from laglab_control.flight import Echo
+from laglab_control.guard import Alarm, Guard
 from laglab_control.laws import Demand, Law
 from laglab_control.model import Model, NonlinearModel
 from laglab_control.replay import Replay, constant_delay, replay
@@ -39,6 +40,7 @@ __all__ = [
     "ESTIMATORS",
     "FAR",
     "INITIAL_VARIANCE",
+    "Alarm",
     "Applied",
     "ConfigError",
     "Control",
@@ -50,6 +52,7 @@ __all__ = [
     "Ekf",
     "Erratum",
     "Estimator",
+    "Guard",
     "Law",
     "LiteralPopf",
     "Measured",

@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike
 
 from laglab_control.errors import ConfigError
 from laglab_control.estimators.family import EstimatorKind, estimator_kind
-from laglab_control.estimators.interface import Estimator, Measured, State
+from laglab_control.estimators.interface import Applied, Estimator, Measured, State
 from laglab_control.flight import Echo, Flight, hear, send, take_off
+from laglab_control.guard import Alarm, Guard, Watched
 from laglab_control.laws.aicardi import STAND_STILL, Demand, Law, as_input
 from laglab_control.limits import Ticks, check, covariance, finite_pose
 from laglab_control.model import Vector
@@ -47,6 +48,8 @@ class StationConfig:
     command_delay: Ticks = 0
     """n, until the stamps tell: n is estimated from the command that each measurement echoes, and
     the delay m of a measurement is read from its own stamp."""
+    guard: bool = False
+    """Whether the estimator is watched (`Guard`)."""
 
     def __post_init__(self) -> None:
         estimator_kind(self.estimator)
@@ -92,7 +95,12 @@ class Controller:
 
     @cached_property
     def _estimator(self) -> Estimator[Any]:
-        return self.kind.make(self.config.model)
+        return self._guard or self.kind.make(self.config.model)
+
+    @cached_property
+    def _guard(self) -> Guard | None:
+        model = self.config.model
+        return Guard(self.kind.make(model), model) if self.config.guard else None
 
     def start(self) -> Control:
         """Tick 0, before its correction."""
@@ -114,19 +122,31 @@ class Controller:
         return Control(self._estimator.expect(estimate, s), flight, drive)
 
     def answer(
-        self, control: Control, measurements: Sequence[Measured], echoes: Sequence[Echo] = ()
+        self,
+        control: Control,
+        measurements: Sequence[Measured],
+        echoes: Sequence[Echo] = (),
+        recalled: Sequence[Applied] = (),
     ) -> Control:
         """The tick's correction and command, from all that arrived.
 
         The robot is to stand still when there is no estimate to drive it by, or it has diverged.
         """
         estimate, flight, drive = control
-        flight, inputs = hear(self.config.model, flight, echoes)
-        estimate = self._estimator.correct(estimate, measurements, inputs)
+        flight, inputs = hear(self.config.model, flight, echoes, recalled)
+        if self._guard and isinstance(estimate, Watched):
+            settled = flight.told.settled
+            estimate = self._guard.correct(estimate, measurements, inputs, settled)
+        else:
+            estimate = self._estimator.correct(estimate, measurements, inputs)
+        return Control(estimate, flight, self._command(estimate, flight, drive))
+
+    def _command(self, estimate: State, flight: Flight, last: Demand) -> Demand:
         if estimate.x is None or self.diverged(estimate.x):
-            return Control(estimate, flight, STAND_STILL)
-        pose = self._at_arrival(estimate.x, flight, drive)
-        return Control(estimate, flight, self.config.law.drive(pose, drive.at_goal))
+            return STAND_STILL
+        law = self.config.law
+        demand = law.drive(self._at_arrival(estimate.x, flight, last), last.at_goal)
+        return demand if estimate.P is None else law.slowed(demand, estimate.P)
 
     def diverged(self, x: Vector) -> bool:
         """Whether a pose estimate is not finite, or FAR from where it began and from the goal."""
@@ -136,6 +156,14 @@ class Controller:
     def warning(self, control: Control) -> str | None:
         """The estimator's."""
         return self._estimator.warning(control.estimate)
+
+    def alarm(self, control: Control) -> Alarm | None:
+        """What the guard has found at this tick."""
+        return control.estimate.alarm if isinstance(control.estimate, Watched) else None
+
+    def gated(self, control: Control) -> int:
+        """How many measurements the guard found too wild to be used."""
+        return control.estimate.gated if isinstance(control.estimate, Watched) else 0
 
     def _applied(self, u: Vector, drive: Demand) -> Vector:
         """The input that the estimator is told."""

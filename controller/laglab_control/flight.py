@@ -18,6 +18,10 @@ RECENT = 25
 """Echoes that the estimate of n is the median of."""
 MEMORY = 1024
 """Ticks for which sent commands are kept."""
+GIVEN_UP = 256
+"""Ticks after which an input that was not told is taken to have been as believed."""
+FEW = 20
+"""So many ticks with an input that may have been another one make no difference that shows."""
 
 
 class Echo(NamedTuple):
@@ -32,6 +36,25 @@ class Echo(NamedTuple):
     command_tick: int | None
 
 
+class Told(NamedTuple):
+    """What the echoes have told so far."""
+
+    recent: tuple[int, ...] = ()
+    """The last delays of commands that had just come into force."""
+    newest: int = -1
+    """The tick of the newest command of those."""
+    known: int = -1
+    """Up to this tick it may be known what was in force; after it, it is believed."""
+    missing: tuple[int, ...] = ()
+    """The ticks up to there of which it is not, in order."""
+
+    @property
+    def settled(self) -> int:
+        """Up to this tick what was in force is known, but for a few ticks, or given up."""
+        missing = [tick for tick in self.missing if tick > self.known - GIVEN_UP]
+        return missing[0] - 1 if len(missing) > FEW else self.known
+
+
 class Flight(NamedTuple):
     """All commands sent by now; the next tick is `tick`. Immutable."""
 
@@ -40,10 +63,7 @@ class Flight(NamedTuple):
     """Up to u_{tick-1}."""
     command_delay: int
     """n as the echoes have it: their median, or what the station was told before the first."""
-    recent: tuple[int, ...]
-    """The last delays that were echoed."""
-    known: int
-    """Up to this tick it may be known what was in force; after it, it is believed."""
+    told: Told
     in_flight: SlidingProduct[Vector, Way]
     """u_{tick-n} ... u_{tick-1}: standing still for what was sent before tick 0."""
     ahead: Way
@@ -53,41 +73,62 @@ class Flight(NamedTuple):
 def take_off(robot: RobotModel, command_delay: int) -> Flight:
     """Before the first command."""
     nothing: SlidingProduct[Vector, Way] = SlidingProduct(joined, NOWHERE)
-    return _rebuilt(robot, Flight(0, logged(), command_delay, (), -1, nothing, NOWHERE))
+    return _rebuilt(robot, Flight(0, logged(), command_delay, Told(), nothing, NOWHERE))
 
 
 def send(robot: RobotModel, flight: Flight, u: Vector) -> tuple[Flight, Vector]:
     """With the command of this tick on its way; and the one that is in force until the next."""
-    tick, sent, n, recent, known, in_flight, _ = flight
+    tick, sent, n, told, in_flight, _ = flight
     sent = append(sent, u, MEMORY)
     applied, in_flight = in_flight.push(u, robot.way(u)).pop()
-    return Flight(tick + 1, sent, n, recent, known, in_flight, in_flight.product), applied
+    return Flight(tick + 1, sent, n, told, in_flight, in_flight.product), applied
 
 
-def hear(robot: RobotModel, flight: Flight, echoes: Sequence[Echo]) -> tuple[Flight, list[Applied]]:
-    """With n as the echoes tell; and the inputs that were in force, as far as they are now known.
+def hear(
+    robot: RobotModel,
+    flight: Flight,
+    echoes: Sequence[Echo],
+    recalled: Sequence[Applied] = (),
+) -> tuple[Flight, list[Applied]]:
+    """With n as the echoes tell; and the inputs that were in force, as far as they are now known:
+    from the echoes, and from what the robot was asked to recall.
 
     When n has changed, what is still on its way is believed to take the new n ticks.
     """
-    if not echoes:
+    if not (echoes or recalled):
         return flight, []
-    tick, sent, n, recent, known, in_flight, ahead = flight
-    inputs = [Applied(echo.tick, echo.u) for echo in echoes]
-    known = max(known, *[echo.tick for echo in echoes])
-    recent = (*recent, *[delay for echo in echoes if (delay := _delay(echo)) is not None])[-RECENT:]
-    seen = sorted(recent)[len(recent) // 2] if recent else n
-    flight = Flight(tick, sent, seen, recent, known, in_flight, ahead)
+    tick, sent, n, told, in_flight, ahead = flight
+    inputs = [Applied(echo.tick, echo.u) for echo in echoes] + list(recalled)
+    for echo in echoes:
+        told = _heard(told, echo)
+    if told.missing:
+        told = _found(told, inputs, tick)
+    seen = sorted(told.recent)[len(told.recent) // 2] if told.recent else n
+    flight = Flight(tick, sent, seen, told, in_flight, ahead)
     if seen == n:
         return flight, inputs
     flight = _rebuilt(robot, flight)
-    return flight, inputs + _believed(flight, since=known + 1)
+    return flight, inputs + _believed(flight, since=told.known + 1)
 
 
-def _delay(echo: Echo) -> int | None:
-    """How late the command was, where that makes sense."""
-    if echo.command_tick is None or not 0 <= echo.tick - echo.command_tick < MEMORY:
-        return None
-    return echo.tick - echo.command_tick
+def _heard(told: Told, echo: Echo) -> Told:
+    """With one more echo. A command that is held, for want of a newer one, tells nothing of n."""
+    recent, newest, known, missing = told
+    made = echo.command_tick
+    if made is not None and made > newest and 0 <= echo.tick - made < MEMORY:
+        recent, newest = (*recent, echo.tick - made)[-RECENT:], made
+    if echo.tick > known + 1:
+        missing += tuple(range(max(known + 1, echo.tick - MEMORY), echo.tick))
+    return Told(recent, newest, max(known, echo.tick), missing)
+
+
+def _found(told: Told, inputs: Sequence[Applied], tick: int) -> Told:
+    """Without the ticks that are no longer missing, or that nobody will tell of any more."""
+    now_known = {applied.tick for applied in inputs}
+    missing = tuple(
+        each for each in told.missing if each not in now_known and each >= tick - MEMORY
+    )
+    return told._replace(missing=missing)
 
 
 def _rebuilt(robot: RobotModel, flight: Flight) -> Flight:

@@ -1,10 +1,12 @@
 """What the robot's messages tell the controller; ticks are counted from the station's first."""
 
 from collections.abc import Sequence
+from math import isfinite
 
 import numpy as np
 
-from laglab_control.estimators.interface import Measured
+import laglab_protocol as protocol
+from laglab_control.estimators.interface import Applied, Measured
 from laglab_control.flight import Echo
 from laglab_protocol import Measurement
 
@@ -21,6 +23,20 @@ def measured(messages: Sequence[Measurement], first: int, tick: int) -> list[Mea
 def echoes(messages: Sequence[Measurement], first: int, tick: int) -> list[Echo]:
     """The commands that were in force just before each was sampled."""
     return [_echo(message, first) for message in messages if first < message.tick <= tick]
+
+
+def recalled(messages: Sequence[protocol.Applied], first: int, tick: int) -> list[Applied]:
+    """The inputs that the robot recalls, as far as it does, of ticks before the present one."""
+    told = [
+        (message.first + i - first, message.v[i], message.omega[i])
+        for message in messages
+        for i in range(min(message.count, len(message.v)))
+    ]
+    return [
+        Applied(j, np.array((v, omega)))
+        for j, v, omega in told
+        if 0 <= j < tick - first and isfinite(v) and isfinite(omega)
+    ]
 
 
 def _echo(message: Measurement, first: int) -> Echo:

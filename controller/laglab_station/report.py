@@ -2,7 +2,12 @@
 
 from msgspec import Struct
 
-from laglab_protocol import Quantiles
+
+class Alarm(Struct, frozen=True):
+    """The estimate was found to be wrong."""
+
+    tick: int
+    cause: str
 
 
 class StationReport(Struct, frozen=True):
@@ -17,11 +22,9 @@ class StationReport(Struct, frozen=True):
     tick_p99_s: float | None = None
     tick_longest_s: float | None = None
     warnings: tuple[str, ...] = ()
-
-    @classmethod
-    def of(
-        cls, n_seen: int, m_seen: int | None, times: Quantiles | None, warnings: tuple[str, ...]
-    ) -> "StationReport":
-        """With the times of the ticks, if they were taken."""
-        p50, p99, longest = times or (None, None, None)
-        return cls(n_seen, m_seen, p50, p99, longest, warnings)
+    alarms: tuple[Alarm, ...] = ()
+    """The first ones; none where the estimator is not guarded."""
+    alarms_raised: int = 0
+    """All."""
+    gated: int = 0
+    """Measurements that were too wild to be used."""

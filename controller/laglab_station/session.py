@@ -9,6 +9,7 @@ from laglab_protocol import (
     ROBOT_SYSTEM,
     STATION_COMPONENT,
     STATION_SYSTEM,
+    Applied,
     Command,
     Estimate,
     Frame,
@@ -31,6 +32,8 @@ class SessionTick(NamedTuple):
     """As sent at this tick; None when nothing was, and the robot held what it had."""
     estimate: Estimate | None = None
     """As told at this tick."""
+    recalled: tuple[Applied, ...] = ()
+    """What the robot recalled at this tick."""
 
 
 def read_session(path: Path) -> Iterator[SessionTick]:
@@ -45,17 +48,20 @@ def heard(frames: Iterable[Frame]) -> Iterator[SessionTick]:
     """The ticks in the frames of both directions; repeats, what is not whole and what others than
     the robot and its station said are passed over."""
     arriving: list[Measurement] = []
+    recalled: list[Applied] = []
     last: SessionTick | None = None
     for frame in frames:
         match (frame.system, frame.component), frame.message:
             case speaker, Measurement() as measurement if speaker == ROBOT:
                 arriving.append(measurement)
+            case speaker, Applied() as told if speaker == ROBOT:
+                recalled.append(told)
             case speaker, Tick(tick, count) if speaker == ROBOT:
-                if len(arriving) == count and (last is None or tick > last.tick):
+                if len(arriving) + len(recalled) == count and (last is None or tick > last.tick):
                     if last is not None:
                         yield last
-                    last = SessionTick(tick, tuple(arriving), None)
-                arriving = []
+                    last = SessionTick(tick, tuple(arriving), None, recalled=tuple(recalled))
+                arriving, recalled = [], []
             case speaker, Command() | Estimate() as said if speaker == STATION and last:
                 last = _with(last, said)
     if last is not None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from laglab_control import Control, Controller, Demand, StationConfig
 from laglab_control.model import Matrix, Vector
-from laglab_station.hearing import echoes, measured
+from laglab_station.hearing import echoes, measured, recalled
 from laglab_station.session import SessionTick
 
 NOTHING = np.full((3, 3), np.nan)
@@ -55,5 +55,6 @@ def _followed(controller: Controller, control: Control, heard: SessionTick, firs
             control,
             measured(heard.measurements, first, heard.tick),
             echoes(heard.measurements, first, heard.tick),
+            recalled(heard.recalled, first, heard.tick),
         )
     return control._replace(drive=drive)

@@ -3,6 +3,7 @@
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from laglab_protocol import (
     STATION_HEARTBEAT,
     STATION_SYSTEM,
     UNANNOUNCED,
+    Applied,
     Command,
     Durations,
     End,
@@ -21,18 +23,28 @@ from laglab_protocol import (
     Frame,
     Measurement,
     Message,
+    Recall,
     Restart,
     Sender,
     Settings,
     Tick,
     Timesync,
 )
-from laglab_station.hearing import echoes, measured
+from laglab_station.alarms import Alarms
+from laglab_station.hearing import echoes, measured, recalled
 from laglab_station.joining import Rest, observe, prior
+from laglab_station.recalling import Asked, question
 from laglab_station.report import StationReport
 
 LONGEST_GAP = MEMORY
 """Ticks without a word, after which nobody knows what the robot did meanwhile."""
+
+
+class Came(NamedTuple):
+    """What a tick of the robot brought."""
+
+    measurements: tuple[Measurement, ...]
+    recalled: tuple[Applied, ...]
 
 
 class Station:
@@ -68,6 +80,8 @@ class Station:
         self.robot_settings: Settings | None = None
         self._robot: tuple[int, int] | None = None
         self._measurements: deque[Measurement] = deque(maxlen=UNANNOUNCED)
+        self._recalled: deque[Applied] = deque(maxlen=UNANNOUNCED)
+        self._asked = Asked()
         self._restart = Restart()
         self._first = 0
         self._control = self._controller.start()
@@ -79,6 +93,7 @@ class Station:
         self._closed = False
         self._measurement_delay: int | None = None
         self._times = Durations()
+        self._alarms = Alarms()
         self._warnings: dict[str, str] = {}
         """By what they are about: of each the first."""
         self._unjudged = False
@@ -111,9 +126,18 @@ class Station:
 
     def report(self) -> StationReport:
         """How the run went so far."""
-        n_seen = self._control.flight.command_delay
-        times = self._times.quantiles()
-        return StationReport.of(n_seen, self._measurement_delay, times, self.warnings)
+        p50, p99, longest = self._times.quantiles() or (None, None, None)
+        return StationReport(
+            n_seen=self._control.flight.command_delay,
+            m_seen=self._measurement_delay,
+            tick_p50_s=p50,
+            tick_p99_s=p99,
+            tick_longest_s=longest,
+            warnings=self.warnings,
+            alarms=tuple(self._alarms.told),
+            alarms_raised=self._alarms.raised,
+            gated=self._alarms.gated(self._controller, self._control),
+        )
 
     def heartbeat(self) -> list[bytes]:
         """The frames that make the station known to the robot, and what it was told."""
@@ -149,6 +173,8 @@ class Station:
         match frame.message:
             case Measurement():
                 self._measurements.append(frame.message)
+            case Applied():
+                self._recalled.append(frame.message)
             case Tick():
                 self._robot = sender
                 return self._hear_tick(frame.message)
@@ -174,16 +200,17 @@ class Station:
         return [end]
 
     def _hear_tick(self, message: Tick) -> list[Message]:
-        measurements = list(self._measurements)
+        came = Came(tuple(self._measurements), tuple(self._recalled))
         self._measurements.clear()
-        if len(measurements) != message.measurements:
+        self._recalled.clear()
+        if len(came.measurements) + len(came.recalled) != message.measurements:
             return []
         if self._outcome is None and self._is_new(message.tick):
             self._meet(message.tick)
         if message.tick == self._tick:
             return self._answer
         if self._outcome is None and (self._tick is None or message.tick > self._tick):
-            self._advance_timed(message.tick, measurements)
+            self._advance_timed(message.tick, came)
             return self._answer
         return []
 
@@ -197,21 +224,23 @@ class Station:
         """A robot that is new to us at this tick."""
         self._judge()
         self._first, self._tick = tick, None
+        self._asked = Asked()
+        self._alarms.handed_over(self._controller, self._control)
         self._control, self._ahead = self._controller.start(), None
         self._joining = Rest() if tick > 0 and self._controller.kind.predicts else None
 
-    def _advance_timed(self, tick: int, measurements: list[Measurement]) -> None:
+    def _advance_timed(self, tick: int, came: Came) -> None:
         started = self._clock() if self._clock else 0
         with np.errstate(over="ignore", invalid="ignore"):  # what follows is seen as diverged
-            self._advance(tick, measurements)
+            self._advance(tick, came)
         if self._clock:
             self._times.add(self._clock() - started)
 
-    def _advance(self, tick: int, measurements: list[Measurement]) -> None:
+    def _advance(self, tick: int, came: Came) -> None:
         if self._joining is None:
-            self._step(tick, measurements)
+            self._step(tick, came)
             return
-        for measurement in measurements:
+        for measurement in came.measurements:
             self._joining = observe(self._joining, measurement, self._config.model)
         if self._joining.known:
             self._take_over(tick, self._joining)
@@ -231,11 +260,12 @@ class Station:
             self._answer.insert(0, self._outcome)  # the command closes the answer
             return
         config = replace(self._config, initial_estimate=x, initial_covariance=P)
+        self._alarms.handed_over(self._controller, self._control)
         self._controller = self._make_controller(config)
         self._control = self._controller.start()
         self._first = self._tick = rest.tick
         self._joining = None
-        self._step(tick, [])
+        self._step(tick, Came((), ()))
 
     @property
     def _peer(self) -> tuple[int, int]:
@@ -245,20 +275,25 @@ class Station:
     def _framed(self, messages: list[Message]) -> list[bytes]:
         return [self._sender.frame(message) for message in messages]
 
-    def _step(self, tick: int, measurements: list[Measurement]) -> None:
-        """On to `tick`; over ticks that were lost on the way the robot held the last command."""
+    def _step(self, tick: int, came: Came) -> None:
+        """On to `tick`; over ticks that were lost on the way the last command is taken to hold,
+        until the robot tells."""
         self._judge()
         control = self._control
         for _ in range(0 if self._tick is None else tick - self._tick):
             control = self._ahead or self._controller.advance(control)
             self._ahead = None
-        arrived = measured(measurements, self._first, tick)
+        first = self._first
+        arrived = measured(came.measurements, first, tick)
         if arrived:
-            self._measurement_delay = tick - self._first - arrived[-1].tick
-        told = echoes(measurements, self._first, tick)
-        self._control = self._controller.answer(control, arrived, told)
+            self._measurement_delay = tick - first - arrived[-1].tick
+        told = echoes(came.measurements, first, tick)
+        known = recalled(came.recalled, first, tick) if came.recalled else ()
+        self._control = self._controller.answer(control, arrived, told, known)
         self._tick = tick
-        self._answer = self._messages(tick, self._control)
+        asks = self._ask(tick - first) if arrived else []
+        said = self._alarms.note(self._controller, self._control, tick)
+        self._answer = said + self._messages(tick, self._control, asks)
         self._unjudged = bool(arrived)
 
     def _judge(self) -> None:
@@ -268,8 +303,16 @@ class Station:
         if said := self._controller.warning(self._control):
             self.warn("estimator", f"tick {self._tick}: {said}")
 
-    def _messages(self, tick: int, control: Control) -> list[Message]:
-        estimates = _estimate(tick, control.estimate)
+    def _ask(self, tick: int) -> list[Message]:
+        """For what was in force at ticks of which nothing was heard, if it is time to ask."""
+        flight = self._control.flight
+        if not flight.told.missing:
+            return []
+        self._asked, asks = question(self._asked, flight.told, tick)
+        return [Recall(self._first + asks.first, asks.ticks, *self._peer)] if asks else []
+
+    def _messages(self, tick: int, control: Control, asks: list[Message]) -> list[Message]:
+        estimates = [*asks, *_estimate(tick, control.estimate)]
         v, omega, _ = control.drive
         command = Command(v, omega, tick, *self._peer, estimates=len(estimates))
         if control.estimate.x is not None and self._controller.diverged(control.estimate.x):

@@ -24,6 +24,15 @@ static LinkEvent request_of(uint8_t system, uint8_t component, uint16_t number) 
     return ours ? (LinkEvent){.kind = LINK_REQUEST, .request = number} : (LinkEvent){.kind = LINK_NOTHING};
 }
 
+static LinkEvent recall_of(const mavlink_message_t *message) {
+    mavlink_laglab_recall_t asked;
+    mavlink_msg_laglab_recall_decode(message, &asked);
+    if (asked.target_system != ROBOT_SYSTEM || asked.target_component != ROBOT_COMPONENT) {
+        return (LinkEvent){.kind = LINK_NOTHING};
+    }
+    return (LinkEvent){.kind = LINK_RECALL, .first = asked.first, .count = asked.count};
+}
+
 static LinkEvent event_of(const mavlink_message_t *message) {
     const LinkEvent nothing = {.kind = LINK_NOTHING};
     const bool modern = message->magic == MAVLINK_STX && !(message->incompat_flags & MAVLINK_IFLAG_SIGNED);
@@ -37,6 +46,8 @@ static LinkEvent event_of(const mavlink_message_t *message) {
         return (LinkEvent){.kind = LINK_SETTINGS};
     case MAVLINK_MSG_ID_LAGLAB_COMMAND:
         return command_of(message);
+    case MAVLINK_MSG_ID_LAGLAB_RECALL:
+        return recall_of(message);
     case MAVLINK_MSG_ID_COMMAND_LONG:
         return request_of(mavlink_msg_command_long_get_target_system(message),
                           mavlink_msg_command_long_get_target_component(message),
@@ -86,12 +97,12 @@ LinkEvent link_next(void) {
     return (LinkEvent){.kind = LINK_NOTHING};
 }
 
-size_t link_write_tick(uint8_t *buffer, uint32_t tick, Pose seen, Command in_force) {
+size_t link_write_tick(uint8_t *buffer, uint32_t tick, Pose seen, Command in_force, uint8_t before) {
     mavlink_message_t message;
     mavlink_msg_laglab_measurement_pack(ROBOT_SYSTEM, ROBOT_COMPONENT, &message, seen.x, seen.y, seen.theta,
                                         in_force.v, in_force.omega, tick, in_force.stamp);
     const size_t size = mavlink_msg_to_send_buffer(buffer, &message);
-    mavlink_msg_laglab_tick_pack(ROBOT_SYSTEM, ROBOT_COMPONENT, &message, tick, 1);
+    mavlink_msg_laglab_tick_pack(ROBOT_SYSTEM, ROBOT_COMPONENT, &message, tick, before);
     return size + mavlink_msg_to_send_buffer(buffer + size, &message);
 }
 
@@ -107,6 +118,19 @@ size_t link_write_settings(uint8_t *buffer) {
     mavlink_message_t message;
     mavlink_msg_laglab_settings_pack(ROBOT_SYSTEM, ROBOT_COMPONENT, &message, SAMPLE_TIME, NAN, NAN, INFINITY, INFINITY,
                                      UINT16_MAX, UINT16_MAX, DIALECT_VERSION);
+    return mavlink_msg_to_send_buffer(buffer, &message);
+}
+
+size_t link_write_applied(uint8_t *buffer, const Memory *memory, uint32_t first, uint16_t count) {
+    double v[LINK_RECALLED] = {0}, omega[LINK_RECALLED] = {0};
+    const uint8_t told = count < LINK_RECALLED ? (uint8_t)count : LINK_RECALLED;
+    for (uint8_t i = 0; i < told; i++) {
+        if (!memory_recall(memory, first + i, &v[i], &omega[i])) {
+            v[i] = omega[i] = NAN;
+        }
+    }
+    mavlink_message_t message;
+    mavlink_msg_laglab_applied_pack(ROBOT_SYSTEM, ROBOT_COMPONENT, &message, v, omega, first, told);
     return mavlink_msg_to_send_buffer(buffer, &message);
 }
 

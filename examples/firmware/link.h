@@ -7,14 +7,17 @@
 
 #include "body.h"
 #include "drive.h"
+#include "memory.h"
 
-#define LINK_LARGEST 128 /* bytes that link_write_* write at most */
+#define LINK_LARGEST 280 /* bytes that link_write_* write at most */
 
 /* What a station can ask of the robot. */
 typedef struct {
-    enum { LINK_NOTHING, LINK_BEGIN, LINK_SETTINGS, LINK_COMMAND, LINK_REQUEST, LINK_END } kind;
+    enum { LINK_NOTHING, LINK_BEGIN, LINK_SETTINGS, LINK_COMMAND, LINK_REQUEST, LINK_RECALL, LINK_END } kind;
     Command command;
     uint16_t request; /* a MAV_CMD */
+    uint32_t first;   /* the first tick to recall */
+    uint16_t count;   /* ticks to recall */
     uint8_t reason;   /* of an end */
 } LinkEvent;
 
@@ -24,14 +27,19 @@ void link_take(uint8_t byte);
 /* What the bytes taken so far complete, one by one, then LINK_NOTHING. */
 LinkEvent link_next(void);
 
-/* The frames of one tick, in one piece: z_k with the command in force before it, and the tick. Their size. */
-size_t link_write_tick(uint8_t *buffer, uint32_t tick, Pose seen, Command in_force);
+/* The frames of one tick, in one piece: z_k with the command in force before it, and the tick, which counts the frames
+ * before it in the piece. Their size. */
+size_t link_write_tick(uint8_t *buffer, uint32_t tick, Pose seen, Command in_force, uint8_t before);
 
 /* The answer to a request: this robot knows none. Its size. */
 size_t link_write_refusal(uint8_t *buffer, uint16_t request);
 
 /* The answer to a station that says what it was told. Its size. */
 size_t link_write_settings(uint8_t *buffer);
+
+/* The answer to a question of what was in force: LINK_RECALLED ticks from `first` on at most. Its size. */
+#define LINK_RECALLED 12
+size_t link_write_applied(uint8_t *buffer, const Memory *memory, uint32_t first, uint16_t count);
 
 /* The answer to an end. Its size. */
 size_t link_write_end(uint8_t *buffer, uint32_t tick, uint8_t reason);

@@ -17,6 +17,7 @@
 #include "body.h"
 #include "drive.h"
 #include "link.h"
+#include "memory.h"
 
 typedef struct {
     int port;
@@ -24,6 +25,9 @@ typedef struct {
     uint32_t tick;
     Body body;
     Drive drive;
+    Memory memory;
+    uint32_t asked; /* the next tick to recall */
+    uint16_t owed;  /* so many from there on were asked for and not told yet */
 } Robot;
 
 /* Raw, 8N1, and without waiting: bytes come and go as they are. What came earlier is forgotten. */
@@ -54,7 +58,13 @@ static bool obey(Robot *robot, LinkEvent event) {
         if (!robot->running) {
             robot->running = true;
             robot->tick = 0;
+            robot->memory.ticks = 0;
+            robot->owed = 0;
         }
+        return true;
+    case LINK_RECALL:
+        robot->asked = event.first;
+        robot->owed = event.count;
         return true;
     case LINK_COMMAND:
         if (robot->running) {
@@ -88,12 +98,26 @@ static bool receive(Robot *robot) {
     return size < 0 && errno == EAGAIN;
 }
 
+/* Some of what the station asked for: so many frames with each tick that the line has room for them. */
+static size_t recall(Robot *robot, uint8_t *buffer) {
+    if (robot->owed == 0) {
+        return 0;
+    }
+    const size_t size = link_write_applied(buffer, &robot->memory, robot->asked, robot->owed);
+    const uint16_t told = robot->owed < LINK_RECALLED ? robot->owed : LINK_RECALLED;
+    robot->asked += told;
+    robot->owed = (uint16_t)(robot->owed - told);
+    return size;
+}
+
 /* Tick k: say where the robot is; the newest command comes into force; drive to k + 1. */
 static bool tick(Robot *robot) {
-    uint8_t buffer[LINK_LARGEST];
+    uint8_t buffer[2 * LINK_LARGEST];
     const Pose seen = body_measure(&robot->body);
-    const size_t size = link_write_tick(buffer, robot->tick, seen, robot->drive.in_force);
+    size_t size = recall(robot, buffer);
+    size += link_write_tick(buffer + size, robot->tick, seen, robot->drive.in_force, size > 0 ? 2 : 1);
     drive_supervise(&robot->drive, robot->tick);
+    memory_keep(&robot->memory, robot->drive.in_force.v, robot->drive.in_force.omega);
     body_drive(&robot->body, robot->drive.in_force.v, robot->drive.in_force.omega, SAMPLE_TIME);
     robot->tick++;
     return send(robot, buffer, size);

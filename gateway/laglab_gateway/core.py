@@ -16,7 +16,7 @@ from laglab_gateway.plant import Plant
 from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import RobotState, Services, standard_parameters
 from laglab_gateway.side import GatewayConfig, RobotSide
-from laglab_protocol import Measurement, Sender
+from laglab_protocol import Measurement, Recall, Sender
 
 
 class Gateway(RobotSide):
@@ -71,15 +71,19 @@ class Gateway(RobotSide):
         Then the plant is on its way to k + 1, unless the run ends at k.
         """
         k, Ts, safety = self.tick, self._config.sample_time, self.safety
-        for command, _ in self._commands.due(k):
-            self.audit.command.arrived(command.tick, k)
-            self._follow(command, k)
+        for message, _ in self._commands.due(k):
+            if isinstance(message, Recall):
+                self._owe(message)
+            else:
+                self.audit.command.arrived(message.tick, k)
+                self._follow(message, k)
         supervised = supervise(self._drive, k, Ts, safety)
         if supervised.mode is not self._drive.mode:
             self.audit.stopped(k)
             self.announce(f"no fresh command for {safety.link_timeout} s: stopping")
         self._drive = supervised
         self._speeds = self._armed(*speeds(self._drive, k, Ts, safety))
+        self._memory.keep(k, self._speeds)
         if self._ending is None:
             self._plant.step(*self._speeds)
 

@@ -26,11 +26,13 @@ from laglab_protocol import (
     STATION_SYSTEM,
     UNANNOUNCED,
     UNKNOWN_DELAY,
+    Applied,
     Command,
     End,
     EndReason,
     Frame,
     Measurement,
+    Recall,
     Restart,
     Sender,
     Settings,
@@ -107,6 +109,8 @@ class Relay(RobotSide):
                 if len(samples) == announced and self._is_next(tick):
                     self._heard = RobotTick(tick, samples)
                     return True
+            case Applied():
+                self._memory.learn(frame.message)
             case Settings():
                 self.robot_settings = frame.message
             case End():
@@ -141,22 +145,32 @@ class Relay(RobotSide):
         self._answered_through = tick - 1
         self._commands.clear()
         self._measurements.clear()
+        self._memory.forget()
+        self._owed.clear()
         self._drive = Drive()
 
     def _audit(self, sample: Measurement) -> None:
         """n by the robot's own word: the command of the sample was in force from s - 1 on."""
+        self._memory.keep(sample.tick - 1, sample.speeds)
         if self._in_force < sample.command_tick <= self._drive.command_tick:
             self._in_force = sample.command_tick
             self.audit.command.arrived(sample.command_tick, sample.tick - 1)
 
     def forward(self) -> list[bytes]:
         """The frames for the robot: the commands that are to come into force at its next tick."""
-        crossed = [crossing.message for crossing in self._commands.due(self.elapsed + 1)]
-        return [
-            self._to_robot.frame(self._allowed(command))
-            for command in crossed
-            if self._follow(command, self.tick + 1)
-        ]
+        frames: list[bytes] = []
+        for message, _ in self._commands.due(self.elapsed + 1):
+            if isinstance(message, Recall):
+                frames += self._remember(message)
+            elif self._follow(message, self.tick + 1):
+                frames.append(self._to_robot.frame(self._allowed(message)))
+        return frames
+
+    def _remember(self, asked: Recall) -> list[bytes]:
+        """Tell what the robot's measurements have told; the robot is asked for what they have not,
+        and the station will ask again."""
+        self._owe(asked)
+        return [self._to_robot.frame(asked)] if self._memory.lacks(asked) else []
 
     def _allowed(self, command: Command) -> Command:
         """For the robot, with its stamp, and without the estimate that went before it."""

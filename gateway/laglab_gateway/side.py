@@ -9,6 +9,7 @@ import math
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import islice
 from typing import NamedTuple
 
 from laglab_gateway.drive import Drive, Safety, follow, rejection
@@ -16,16 +17,20 @@ from laglab_gateway.link.channel import Channel
 from laglab_gateway.link.fates import FateKind, Fates
 from laglab_gateway.link.log import LinkRow
 from laglab_gateway.link.timeline import Direction
+from laglab_gateway.memory import KEPT, SpeedMemory
 from laglab_gateway.record.audit import Audit, DirectionAudit
 from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import RobotState, Services
 from laglab_gateway.values import Positive, Ticks, checked
 from laglab_protocol import (
+    MAV_SEVERITY_WARNING,
+    RECALLED,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
     STATION_COMPONENT,
     STATION_SYSTEM,
     UNANNOUNCED,
+    Applied,
     Command,
     End,
     EndReason,
@@ -34,6 +39,7 @@ from laglab_protocol import (
     Heartbeat,
     Measurement,
     Message,
+    Recall,
     Sender,
     Settings,
     Statustext,
@@ -84,7 +90,7 @@ def from_station(frame: Frame) -> bool:
     return (frame.system, frame.component) == (STATION_SYSTEM, STATION_COMPONENT)
 
 
-def _is_meant(command: Command) -> bool:
+def _is_meant(command: Command | Recall) -> bool:
     target = command.target_system, command.target_component
     return target == (ROBOT_SYSTEM, ROBOT_COMPONENT)
 
@@ -94,7 +100,9 @@ def reason_of(end: End) -> EndReason:
     return EndReason(end.reason) if end.reason in set(EndReason) else EndReason.FAILED
 
 
-MAV_SEVERITY_WARNING = 4
+APPLIED_A_TICK = 5
+"""So many LAGLAB_APPLIED go with a tick's measurements: a datagram stays in one piece."""
+MOST_OWED = KEPT // RECALLED + 1
 Cell = float | None
 
 
@@ -123,10 +131,13 @@ class RobotSide(ABC):
         self._sender = sender or Sender(ROBOT_SYSTEM, ROBOT_COMPONENT)
         self._notices: list[Message] = []
         fates = fates or {}
-        self._commands: Channel[Command] = Channel("command", n, Ts, fates.get("command"))
-        self._measurements: Channel[Measurement] = Channel(
+        self._commands: Channel[Command | Recall] = Channel("command", n, Ts, fates.get("command"))
+        self._measurements: Channel[Measurement | Applied] = Channel(
             "measurement", m, Ts, fates.get("measurement")
         )
+        self._memory = SpeedMemory()
+        self._owed: dict[int, Applied] = {}
+        """What the station asked to be told, by first tick, in the order in which it will be."""
         self._answered_through = -1
         self._drive = Drive()
         self._go_to(0)
@@ -136,6 +147,7 @@ class RobotSide(ABC):
         self.tick = tick
         self._batch: list[Message] = []
         self._estimates: deque[Estimate] = deque(maxlen=UNANNOUNCED)
+        self._recalls: deque[Recall] = deque(maxlen=UNANNOUNCED)
         self._command: Command | None = None
 
     @property
@@ -163,12 +175,16 @@ class RobotSide(ABC):
         """The frames that begin this tick for the station."""
 
     def _tell(self, samples: Iterable[Measurement]) -> list[bytes]:
-        """Put samples on the link; the frames: each z that has come across, and the tick."""
+        """Put samples on the link, and some of what the station asked to be told; the frames: all
+        that has come across, and the tick."""
         for sample in samples:
             self._measurements.push(self.elapsed, sample)
+        for first in list(islice(self._owed, APPLIED_A_TICK)):
+            self._measurements.push(self.elapsed, self._owed.pop(first))
         due = [crossing.message for crossing in self._measurements.due(self.elapsed)]
-        for measurement in due:
-            self.audit.measurement.arrived(measurement.tick, self.tick)
+        for message in due:
+            if isinstance(message, Measurement):
+                self.audit.measurement.arrived(message.tick, self.tick)
         self._batch = [*due, Tick(self.tick, len(due))]
         return self.repeat_tick()
 
@@ -189,8 +205,10 @@ class RobotSide(ABC):
         match message:
             case Heartbeat():
                 self.connected = True
-            case Command() if not _is_meant(message):
+            case Command() | Recall() if not _is_meant(message):
                 pass  # for another robot on the same line
+            case Recall():
+                self._recalls.append(message)
             case Estimate() if message.tick == self.tick and not self.answered:
                 self._estimates.append(message)
             case Command() if message.tick == self.tick and not self.answered:
@@ -199,6 +217,9 @@ class RobotSide(ABC):
                 self._push(message)
             case Command() | Estimate():
                 pass  # said again, or of a tick that has not come
+            case Statustext():
+                if not self.answered:  # said again with a repeated answer, it is told once
+                    self.announce(message.text.decode(errors="replace"))
             case End():
                 self._take_end(message)
             case _:
@@ -218,14 +239,22 @@ class RobotSide(ABC):
         return self.services.answer(frame, self.state)
 
     def _take_answer(self, command: Command) -> None:
-        if len(self._estimates) < command.estimates:
+        if len(self._estimates) + len(self._recalls) < command.estimates:
             return  # a frame of this answer was lost: the repeat will bring it whole
         self._command = command
         self._push(command)
+        for recall in self._recalls:
+            self._commands.push(self.elapsed, recall)
 
     def _push(self, command: Command) -> None:
         self._answered_through = command.tick
         self._commands.push(self.elapsed, command)
+
+    def _owe(self, asked: Recall) -> None:
+        """Answer a question, in the next ticks' datagrams; asked again it is answered again."""
+        for answer in self._memory.answers(asked):
+            if len(self._owed) < MOST_OWED:
+                self._owed.setdefault(answer.first, answer)
 
     def _follow(self, command: Command, tick: int) -> bool:
         """Follow from `tick` on a command that came across; False, and counted, when rejected."""

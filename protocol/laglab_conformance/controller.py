@@ -18,6 +18,7 @@ from laglab_protocol.messages.loop import (
     EndReason,
     Estimate,
     Measurement,
+    Recall,
     Settings,
     Tick,
 )
@@ -45,13 +46,13 @@ class ControllerSession(Session):
     def go_on(self) -> None:
         self.tick += 1
 
-    def answer_to(self, *messages: Message) -> list[Estimate | Command]:
+    def answer_to(self, *messages: Message) -> list[Estimate | Recall | Command]:
         """What came back, up to the command, for these in one datagram. Raises NoReactionError."""
         before = len(self.heard)
         self.send(*messages)
         if self.listen(self.waits.react, lambda frame: isinstance(frame.message, Command)):
             came = [frame.message for frame in self.heard[before:]]
-            return [message for message in came if isinstance(message, Estimate | Command)]
+            return [message for message in came if isinstance(message, Estimate | Recall | Command)]
         raise NoReactionError(f"no answer to {messages[-1]}")
 
 
@@ -72,11 +73,15 @@ def _answers_whole(session: ControllerSession) -> str | None:
         *estimates, command = session.answer_to(_sample(tick), Tick(tick, 1))
         session.go_on()
         assert isinstance(command, Command)
-        if command.tick != tick or any(each.tick != tick for each in estimates):
+        if command.tick != tick or any(_stamp(each, tick) != tick for each in estimates):
             return f"tick {tick} is answered with other stamps: {command}"
         if command.estimates != len(estimates):
             return f"the command tells of {command.estimates} estimates, {len(estimates)} came"
     return None
+
+
+def _stamp(message: Estimate | Recall | Command, tick: int) -> int:
+    return tick if isinstance(message, Recall) else message.tick
 
 
 def _aims(session: ControllerSession) -> str | None:
@@ -152,6 +157,17 @@ def _ends(session: ControllerSession) -> str | None:
     return None if answers[0] == end else f"{end} is answered with {answers[0]}"
 
 
+def _asks(session: ControllerSession) -> str | None:
+    """Of a few ticks no measurement comes, nor what it would have told of the command in force."""
+    for missed in (False, True, True, True, *[False] * 30):
+        tick, before = session.tick, len(session.heard)
+        session.answer_to(*([] if missed else [_sample(tick)]), Tick(tick, int(not missed)))
+        session.go_on()
+        if any(isinstance(each.message, Recall) for each in session.heard[before:]):
+            return None
+    return "it does not ask what was in force at ticks of which it heard nothing"
+
+
 def _tells_settings(session: ControllerSession) -> str | None:
     told = [each.message for each in session.heard if isinstance(each.message, Settings)]
     if not told:
@@ -170,6 +186,7 @@ ITEMS: list[Item[ControllerSession]] = [
     Item("lock-step", "commands are meant for the robot", _aims),
     Item("lock-step", "commands are finite", _finite),
     Item("lock-step", "it tells its settings", _tells_settings, mandatory=False),
+    Item("lock-step", "it asks for what it missed", _asks, mandatory=False),
     Item("timing", f"it answers within {SOON} s", reacts_soon),
     *SIGNING,
     *SENDING,

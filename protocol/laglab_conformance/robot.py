@@ -7,7 +7,7 @@ from msgspec.structs import replace
 
 from laglab_conformance.forge import Forged
 from laglab_conformance.items import Item, refused
-from laglab_conformance.session import NoReactionError, Session
+from laglab_conformance.session import DoesNotApplyError, NoReactionError, Session
 from laglab_protocol.framing.frame import Frame
 from laglab_protocol.messages.base import Message
 from laglab_protocol.messages.loop import (
@@ -16,16 +16,18 @@ from laglab_protocol.messages.loop import (
     ROBOT_SYSTEM,
     STATION_COMPONENT,
     STATION_SYSTEM,
+    Applied,
     Command,
     End,
     EndReason,
     Measurement,
+    Recall,
     Settings,
     Tick,
 )
 from laglab_protocol.messages.standard import STATION_HEARTBEAT, CommandAck, CommandLong
 
-Batch = list[Measurement]
+Batch = list[Measurement | Applied]
 
 ANOTHER = 7
 """The system of a robot that is not under test."""
@@ -98,7 +100,7 @@ def batches(session: RobotSession) -> list[tuple[Batch, Tick]]:
     """Every tick but the first, which we may have heard in part, with its measurements."""
     whole, waiting = [], Batch()
     for frame in session.heard:
-        if isinstance(frame.message, Measurement):
+        if isinstance(frame.message, Measurement | Applied):
             waiting.append(frame.message)
         elif isinstance(frame.message, Tick):
             whole.append((waiting, frame.message))
@@ -122,7 +124,7 @@ def _not_finite(session: RobotSession) -> str | None:
 def _counts(session: RobotSession) -> str | None:
     for batch, last in batches(session):
         if len(batch) != last.measurements:
-            return f"{last} came after {len(batch)} measurements"
+            return f"{last} came after {len(batch)} of them"
     return None
 
 
@@ -165,6 +167,32 @@ def _settings(session: RobotSession) -> str | None:
     return None if told.sample_time > 0 else f"its sample time is {told.sample_time}"
 
 
+def _recalls(session: RobotSession) -> str | None:
+    """Which speeds were in force just before the newest measurement: as that measurement told."""
+    session.exchange()
+    newest = measurements(session)[-1]
+    if newest.tick == 0:
+        raise DoesNotApplyError("nothing was in force before its first tick")
+    asked, before = Recall(newest.tick - 1, 1, *session.peer), len(session.heard)
+    deadline = time.monotonic() + 2 * session.waits.react
+    while time.monotonic() < deadline:
+        session.send(asked, session.command(session.tick, estimates=1))  # which counts the question
+        session.reacts(session.waits.react)
+        told = [
+            each.message for each in session.heard[before:] if isinstance(each.message, Applied)
+        ]
+        if told:
+            return _as_asked(told[0], asked, newest)
+    return "LAGLAB_RECALL is not answered"
+
+
+def _as_asked(told: Applied, asked: Recall, newest: Measurement) -> str | None:
+    if (told.first, told.count) != (asked.first, asked.count):
+        return f"asked of tick {asked.first} it tells of {told.count} from {told.first} on"
+    right = (told.v[0], told.omega[0]) == newest.speeds
+    return None if right else f"{told.v[0]}, {told.omega[0]} instead of {newest.speeds}"
+
+
 BEGINS = Item("ticks", "it begins when a station is heard", _begins)
 NOT_FINITE = Item("ticks", "it survives a command that is not finite", _not_finite)
 NOT_MEANT = Item("ticks", "a command for another robot is not followed", refused(_for_another))
@@ -172,5 +200,6 @@ STAMPED = [
     Item("ticks", "the tick counts its measurements", _counts),
     Item("ticks", "measurements tell the command in force", _echoes),
 ]
+RECALLS = Item("ticks", "it recalls what was in force", _recalls, mandatory=False)
 SETTINGS = Item("ticks", "it tells its settings", _settings, mandatory=False)
 ENDS = Item("ticks", "it answers END", _ends)

@@ -21,22 +21,26 @@ from laglab_protocol.listener import Listener
 from laglab_protocol.messages.base import Message
 from laglab_protocol.messages.loop import (
     NO_COMMAND,
+    RECALLED,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
     STATION_COMPONENT,
     STATION_SYSTEM,
     UNANNOUNCED,
     UNKNOWN_DELAY,
+    Applied,
     Command,
     End,
     EndReason,
     Estimate,
     Measurement,
+    Recall,
     Settings,
     Tick,
     message_type,
 )
 from laglab_protocol.messages.standard import (
+    MAV_SEVERITY_WARNING,
     STATION_HEARTBEAT,
     Attitude,
     AutopilotVersion,
@@ -67,7 +71,9 @@ from laglab_protocol.tlog import TlogError, read_tlog, tlog_record
 
 __all__ = [
     "EVERY_MESSAGE",
+    "MAV_SEVERITY_WARNING",
     "NO_COMMAND",
+    "RECALLED",
     "ROBOT_COMPONENT",
     "ROBOT_SYSTEM",
     "STATION_COMPONENT",
@@ -76,6 +82,7 @@ __all__ = [
     "UNANNOUNCED",
     "UNKNOWN_DELAY",
     "Address",
+    "Applied",
     "Attitude",
     "AutopilotVersion",
     "BadUrlError",
@@ -114,6 +121,7 @@ __all__ = [
     "PortBusyError",
     "ProtocolError",
     "Quantiles",
+    "Recall",
     "Receiver",
     "Refusal",
     "Restart",

@@ -51,7 +51,7 @@ def test_the_ekf_keeps_its_covariance_for_a_million_ticks():
         for k, u in enumerate(inputs):
             belief = Belief(*ROBOT.predict(*belief, u))
             if k % 5 == 0:
-                belief = correct(ROBOT, belief, z)
+                belief = correct(ROBOT, belief, z).posterior
         assert is_covariance(belief.P)
         assert np.linalg.eigvalsh(belief.P)[0] > 0
     assert np.all(np.isfinite(belief.x))

@@ -7,13 +7,17 @@ these fields of these bytes. The bytes were made by pymavlink and agree with mav
 import math
 from typing import NamedTuple
 
+from msgspec.structs import astuple
+
 from laglab_protocol import (
+    Applied,
     Command,
     End,
     Estimate,
     Heartbeat,
     Measurement,
     Message,
+    Recall,
     Settings,
     Tick,
 )
@@ -32,6 +36,12 @@ class Golden(NamedTuple):
     @property
     def raw(self) -> bytes:
         return bytes.fromhex(self.hexadecimal)
+
+
+def numbers(message: Message) -> tuple[float, ...]:
+    """The fields, those of arrays one by one."""
+    fields = [each if isinstance(each, tuple) else (each,) for each in astuple(message)]
+    return sum(fields, ())
 
 
 GOLDEN = [
@@ -158,6 +168,32 @@ GOLDEN = [
         Settings(0.02, math.nan, math.nan, math.inf, math.inf, 65535, 65535, 2),
         "fd2d000017010189cb007b14ae47e17a943f000000000000f87f000000000000f87f000000000000"
         "f07f000000000000f07fffffffff02bb1b",
+    ),
+    Golden(
+        "which speeds were in force?",
+        200,
+        190,
+        24,
+        Recall(4000000000, 1024, 1, 1),
+        "fd08000018c8be8acb0000286bee000401011179",
+    ),
+    Golden(
+        "these, and one that nobody knows any more",
+        1,
+        1,
+        25,
+        Applied(
+            (0.1, -1.7, math.nan, *(0.0,) * 9),
+            (-0.0, 0.3, math.nan, *(0.0,) * 9),
+            4000000000,
+            3,
+        ),
+        "fdc500001901018bcb009a9999999999b93f333333333333fbbf000000000000f87f000000000000"
+        "00000000000000000000000000000000000000000000000000000000000000000000000000000000"
+        "00000000000000000000000000000000000000000000000000000000000000000080333333333333"
+        "d33f000000000000f87f000000000000000000000000000000000000000000000000000000000000"
+        "00000000000000000000000000000000000000000000000000000000000000000000000000000000"
+        "000000286bee0316ac",
     ),
     Golden(
         "a rover's heartbeat",

@@ -11,6 +11,7 @@ from msgspec.structs import replace
 from laglab_conformance.forge import Forged
 from laglab_protocol import (
     NO_COMMAND,
+    Applied,
     AutopilotVersion,
     Codec,
     Command,
@@ -27,6 +28,7 @@ from laglab_protocol import (
     ParamRequestRead,
     ParamValue,
     Ping,
+    Recall,
     Sender,
     Settings,
     Tick,
@@ -126,6 +128,10 @@ class Robot(Peer):
         self.slow_until = 0
         self.estimates = 0
         self.repeats = 0
+        self.owed: Applied | None = None
+        self.telling: Applied | None = None
+        self.told = -1
+        self.speed = 0.1 if fault == "moves by itself" else 0.0
 
     def silence(self) -> None:
         if self.tick is not None and self.fault != "never repeats":
@@ -138,9 +144,12 @@ class Robot(Peer):
 
     def say_tick(self, tick: int) -> None:
         x = float(self.repeats) if self.fault == "measures again for a repeat" else 0.0
-        v = 0.1 if self.fault == "moves by itself" else 0.0
-        sample = Measurement(x, 0.0, 0.0, v, 0.0, tick, self.in_force(tick))
-        self.send(sample, Tick(tick, 2 if self.fault == "miscounts measurements" else 1))
+        sample = Measurement(x, 0.0, 0.0, self.speed, 0.0, tick, self.in_force(tick))
+        if tick != self.told:
+            self.telling, self.owed, self.told = self.owed, None, tick
+        first = [sample] if self.telling is None else [self.telling, sample]
+        wrong = self.fault == "miscounts measurements"
+        self.send(*first, Tick(tick, len(first) + wrong))
 
     def in_force(self, tick: int) -> int:
         """The stamp of the command in force before this tick."""
@@ -151,8 +160,9 @@ class Robot(Peer):
         match message:
             case Heartbeat() if self.tick is None:
                 self.begin()
-            case Estimate():
+            case Estimate() | Recall():
                 self.estimates += 1
+                self.serve(message)
             case Command() if self.is_meant(message):
                 self.hear_command(message)
             case End() if self.fault != "ignores END":
@@ -195,6 +205,9 @@ class Robot(Peer):
             case ParamRequestRead(index, _, _, name):
                 self.send(values[0 if index == 0 or self.fault != "mixes names up" else 1])
                 del name
+            case Recall() if self.fault != "forgets":
+                v = self.speed + (self.fault == "recalls amiss")
+                self.owed = Applied((v,) + (0.0,) * 11, (0.0,) * 12, message.first, 1)
             case Settings() if self.fault != "keeps its settings to itself":
                 self.send(Settings(0.01))
             case Ping() if self.fault != "does not answer pings":
@@ -260,6 +273,8 @@ class Controller(Peer):
     def __init__(self, endpoint: Endpoint, fault: str, key_file: Path | None) -> None:
         super().__init__(endpoint, fault, key_file)
         self.last: int | None = None
+        self.newest: int | None = None
+        self.missed = False
         self.measurements = 0
         self.again = 0
 
@@ -272,6 +287,8 @@ class Controller(Peer):
         match message:
             case Measurement():
                 self.measurements += 1
+                self.missed |= self.newest is not None and message.tick > self.newest + 1
+                self.newest = message.tick
             case Tick():
                 self.hear_tick(message)
             case End() if self.fault != "ignores END":
@@ -299,7 +316,9 @@ class Controller(Peer):
             v = float("inf")
         stamp = tick + 1 if self.fault == "stamps estimates wrong" else tick
         target = 2 if self.fault == "aims elsewhere" else 1
-        estimate = Estimate(*[0.0] * 9, tick=stamp)  # type: ignore[misc]
+        estimate: Message = Estimate(*[0.0] * 9, tick=stamp)  # type: ignore[misc]
+        if self.missed and self.fault != "does not ask":
+            self.missed, estimate = False, Recall(0, 1, 1, 1)
         command = Command(v, 0.0, tick, target, 1, 1)
         twice = self.fault == "answers twice" and tick > 19
         self.send(estimate, command, *([estimate, command] if twice else []))

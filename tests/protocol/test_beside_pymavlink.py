@@ -29,7 +29,7 @@ def false_starts() -> tuple[list[bytes], list[bytes]]:
 def flipped_bits() -> tuple[list[bytes], list[bytes]]:
     """A line that flips one bit in a few thousand."""
     noise = random.Random(4)
-    sent = FRAMES * 50
+    sent = FRAMES * 200
     damaged = [
         bytes(byte ^ (1 << noise.randrange(8) if noise.random() < 0.003 else 0) for byte in raw)
         for raw in sent

@@ -66,7 +66,9 @@ def c_double(value: float) -> str:
     return value.hex()
 
 
-def c_value(value: float) -> str:
+def c_value(value: float | tuple[float, ...]) -> str:
+    if isinstance(value, tuple):
+        return f"(const double[]){{{', '.join(map(c_double, value))}}}"
     return c_double(value) if isinstance(value, float) else f"{value}LL"
 
 
@@ -74,7 +76,7 @@ def lower_name(row: Golden) -> str:
     return layout_of(row.message).name.lower()
 
 
-def declared_order(row: Golden) -> list[float]:
+def declared_order(row: Golden) -> list[float | tuple[float, ...]]:
     """C's pack functions take the fields as the XML declares them."""
     generated = dialect.mavlink_map[layout_of(row.message).id]
     return [astuple(row.message)[i] for i in generated.orders]

@@ -12,14 +12,14 @@ from laglab_protocol.framing.frame import Frame, decode
 from laglab_protocol.messages.layout import layout_of
 
 from .encoding import encode
-from .golden import GOLDEN, Golden
+from .golden import GOLDEN, Golden, numbers
 
 rows = pytest.mark.parametrize("row", GOLDEN, ids=lambda row: row.name)
 
 
 def bits(message: Message) -> bytes:
     """The fields as bytes, so that a NaN equals itself and zeros keep their sign."""
-    return b"".join(struct.pack("<d", each) for each in astuple(message))
+    return b"".join(struct.pack("<d", each) for each in numbers(message))
 
 
 @rows
@@ -55,6 +55,7 @@ def test_pymavlink_makes_these_bytes(row: Golden) -> None:
 def test_pymavlink_reads_these_fields(row: Golden) -> None:
     (read,) = dialect.MAVLink(None).parse_buffer(row.raw)
     fields = [getattr(read, name) for name in generated_of(row.message).ordered_fieldnames]
+    fields = [tuple(each) if isinstance(each, list) else each for each in fields]
 
     assert bits(type(row.message)(*fields)) == bits(row.message)
 

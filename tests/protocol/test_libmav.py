@@ -81,7 +81,8 @@ def test_libmav_reads_these_fields(row: Golden, peer: Libmav, endpoint: Endpoint
 
     fields = asdict(row.message)
     assert {name: repr(heard[name]) for name in fields} == {
-        name: repr(value) for name, value in fields.items()
+        name: repr(list(value) if isinstance(value, tuple) else value)
+        for name, value in fields.items()
     }
 
 

@@ -13,21 +13,21 @@ from pathlib import Path
 from typing import IO, NamedTuple
 
 import pytest
-from msgspec.structs import asdict, astuple
+from msgspec.structs import asdict
 
-from laglab_protocol import Command, Endpoint, Frame, Receiver, Sender, open_endpoint
+from laglab_protocol import Command, Endpoint, Frame, Recall, Receiver, Sender, open_endpoint
 from laglab_protocol.messages.layout import layout_of
 
-from .golden import GOLDEN, Golden
+from .golden import GOLDEN, Golden, numbers
 
 HEARTBEAT = GOLDEN[-1].message
 FINITE = [
     row
     for row in GOLDEN
-    if layout_of(row.message).id >= 52100 and all(map(math.isfinite, astuple(row.message)))
+    if layout_of(row.message).id >= 52100 and all(map(math.isfinite, numbers(row.message)))
 ]
 """mavsdk passes fields as JSON, which has no NaN."""
-FOR_A_STATION = [row for row in FINITE if not isinstance(row.message, Command)]
+FOR_A_STATION = [row for row in FINITE if not isinstance(row.message, Command | Recall)]
 """It does not show what is addressed to the robot."""
 
 

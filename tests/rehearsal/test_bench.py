@@ -114,8 +114,9 @@ def test_every_filter_is_timed_at_every_delay_and_the_whole_controller_too(
     rivals = {"popf, product taken anew", "EKF rerun over window", filter_bench.FILTERPY}
     ours = set(filter_bench.OURS)
     assert alone == set(itertools.product(("m = 4", "m = 40", "m = 400"), ours | rivals))
-    assert whole == set(itertools.product(("m = 2", "m = 20", "m = 200"), ours))
-    assert len(report.figures) == len(ours | rivals) + len(ours)
+    controllers = ours | {filter_bench.GUARDED}
+    assert whole == set(itertools.product(("m = 2", "m = 20", "m = 200"), controllers))
+    assert len(report.figures) == len(ours | rivals) + len(controllers)
     page = capsys.readouterr().out
     assert "the filter alone" in page
     assert "extrapolation over n = m ticks" in page

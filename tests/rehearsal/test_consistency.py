@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from laglab.scenario import load
-from laglab.studies.consistency import Sample, chi_square_bounds, verdict
-from laglab.studies.workers import samples
+from laglab.studies.consistency import Sample, chi_square_bounds, samples, verdict
 
 
 @pytest.mark.parametrize(

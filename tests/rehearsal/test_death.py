@@ -148,10 +148,16 @@ SIDES = {"gateway": b"robot_side", "controller": b"station_side"}
 
 
 def children() -> dict[int, bytes]:
-    """The processes that this one has started, and their command lines."""
+    """The sides that this process has started and that still run, and their command lines."""
     path = Path(f"/proc/self/task/{threading.main_thread().native_id}/children")
     numbers = [int(number) for number in path.read_text().split()]
-    return {number: Path(f"/proc/{number}/cmdline").read_bytes() for number in numbers}
+    commands = {number: Path(f"/proc/{number}/cmdline").read_bytes() for number in numbers}
+    sides = SIDES.values()
+    return {
+        number: command
+        for number, command in commands.items()
+        if any(side in command for side in sides)
+    }
 
 
 def kill_children(side: str) -> None:

@@ -62,6 +62,7 @@ LINK: Keys = {
     "event": st.lists(table(EVENT), max_size=2),
     "replay": st.sampled_from(["link.csv", "./link.csv", "earlier run/link.csv"]),
 }
+PLANT_EVENT: Keys = {"at": st.floats(0, 1e6), "place": POSE}
 PLANT: Keys = {
     "fmi": st.sampled_from([2, 3]),
     "integration": st.sampled_from(["euler", "exact"]),
@@ -74,15 +75,17 @@ PLANT: Keys = {
     "wheel_radius_error": SHARE,
     "track_error": SHARE,
     "wheel_slip": st.floats(0, 1, exclude_max=True),
+    "event": st.lists(st.fixed_dictionaries(PLANT_EVENT), max_size=2),
 }
 ESTIMATOR: Keys = {
     "kind": st.sampled_from(list(ESTIMATORS)),
     "compare": st.lists(st.sampled_from([name for name in ESTIMATORS if name != "raw"])),
     "initial_covariance": st.floats(0, 1.0),
     "initial_estimate": POSE | st.sampled_from(["start", "drawn"]),
+    "guard": st.booleans(),
 }
 LAW: Keys = dict.fromkeys(
-    ("gamma", "lambda", "h", "v_max", "omega_max", "goal_tolerance"), POSITIVE
+    ("gamma", "lambda", "h", "v_max", "omega_max", "goal_tolerance", "caution"), POSITIVE
 )
 SAFETY: Keys = {
     **dict.fromkeys(("v_limit", "omega_limit"), POSITIVE),
@@ -135,6 +138,7 @@ def test_the_strategies_know_every_key() -> None:
         *(f"link.{key}" for key in LINK),
         *(f"safety.{key}" for key in SAFETY),
         *(f"link.event.{ANY}.{key}" for key in EVENT),
+        *(f"plant.event.{ANY}.{key}" for key in (*PLANT_EVENT, "by")),
     }
     for link in ("link.command", "link.measurement", f"link.event.{ANY}.link"):
         known |= {f"{link}.{key}" for key in IMPAIRMENTS}

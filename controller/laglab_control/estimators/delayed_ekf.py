@@ -7,7 +7,7 @@ from typing import Generic, NamedTuple, TypeVar
 
 from laglab_control.estimators import kalman
 from laglab_control.estimators.interface import Applied, Estimator, Measured, by_sampling
-from laglab_control.estimators.kalman import Belief, Compared, Innovation
+from laglab_control.estimators.kalman import Belief, Innovation
 from laglab_control.estimators.windows import Windows
 from laglab_control.model import Matrix, Model, Vector
 from laglab_control.past.log import Log, append, cut, logged
@@ -24,6 +24,7 @@ class Filtered(NamedTuple):
     prior: Belief
     z: Vector | None
     posterior: Belief
+    innovation: Innovation | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +35,8 @@ class DelayedState(Generic[W]):
     filtered: Log[Filtered]
     window: SlidingProduct[Vector, W]
     windows: Windows[W]
+    innovation: Innovation | None = None
+    """Of the newest measurement of this tick's correction."""
 
     @property
     def x(self) -> Vector:
@@ -66,7 +69,7 @@ class DelayedEkf(Estimator[DelayedState[W]]):
     def start(self, x: Vector, P: Matrix) -> DelayedState[W]:
         """The prior of tick 0."""
         prior = Belief(x, P)
-        first = Filtered(0, None, prior, None, prior)
+        first = Filtered(0, None, prior, None, prior, None)
         window: SlidingProduct[Vector, W] = SlidingProduct(
             self.windows.compose, self.windows.identity
         )
@@ -96,14 +99,15 @@ class DelayedEkf(Estimator[DelayedState[W]]):
             state = self._revise(state, late, late_known)
         for s, z in measurements:
             state = self._advance(state, s, z, known)
-        return self._put_right(state, known)
+        window = self._put_right(state, known)
+        if not measurements:
+            return DelayedState(state.tick, state.filtered, window, self.windows)
+        innovation = _innovation(state.filtered, measurements[-1].tick)
+        return DelayedState(state.tick, state.filtered, window, self.windows, innovation)
 
     def innovation(self, state: DelayedState[W]) -> Innovation | None:
-        """z_s - h(x^-_s), where the EKF is."""
-        newest = state.filtered.newest
-        if newest.z is None:
-            return None
-        return kalman.innovation(self.model, Compared(newest.prior, newest.z))
+        """z_s - h(x^-_s), with the prior that the EKF has at s by now."""
+        return state.innovation
 
     def _advance(
         self, state: DelayedState[W], s: int, z: Vector | None, known: Mapping[int, Vector]
@@ -119,26 +123,29 @@ class DelayedEkf(Estimator[DelayedState[W]]):
             filtered = self._extend(filtered, known.get(tick, u), z if tick == s else None)
         return DelayedState(state.tick, filtered, window, self.windows)
 
-    def _put_right(self, state: DelayedState[W], known: Mapping[int, Vector]) -> DelayedState[W]:
+    def _put_right(
+        self, state: DelayedState[W], known: Mapping[int, Vector]
+    ) -> SlidingProduct[Vector, W]:
         """The window with those of its inputs that were wrong put right; `known` by the tick that
         each led to."""
         newest = state.filtered.newest.tick
         if all(tick <= newest for tick in known):
-            return state
+            return state.window
         window = state.window.emptied()
         for tick, u in enumerate(state.window, start=newest + 1):
             right = known.get(tick, u)
             window = window.push(right, self.windows.over(right))
-        return DelayedState(state.tick, state.filtered, window, self.windows)
+        return window
 
     def _extend(self, filtered: Log[Filtered], u: Vector, z: Vector | None) -> Log[Filtered]:
-        tick, *_, posterior = filtered.newest
-        prior = Belief(*self.model.predict(*posterior, u))
-        return append(filtered, self._corrected(tick + 1, u, prior, z), self.memory)
+        newest = filtered.newest
+        prior = Belief(*self.model.predict(*newest.posterior, u))
+        return append(filtered, self._corrected(newest.tick + 1, u, prior, z), self.memory)
 
     def _corrected(self, tick: int, u: Vector | None, prior: Belief, z: Vector | None) -> Filtered:
-        posterior = prior if z is None else kalman.correct(self.model, prior, z)
-        return Filtered(tick, u, prior, z, posterior)
+        if z is None:
+            return Filtered(tick, u, prior, None, prior, None)
+        return Filtered(tick, u, prior, z, *kalman.correct(self.model, prior, z))
 
     def _revise(
         self, state: DelayedState[W], late: Mapping[int, Vector], known: Mapping[int, Vector]
@@ -155,3 +162,10 @@ class DelayedEkf(Estimator[DelayedState[W]]):
             else:
                 filtered = self._extend(filtered, u, z)
         return DelayedState(state.tick, filtered, state.window, self.windows)
+
+
+def _innovation(filtered: Log[Filtered], s: int) -> Innovation | None:
+    """At tick s, as it is by now; None where nothing was measured, or it is no longer kept."""
+    items, length = filtered
+    index = length - 1 - (items[length - 1].tick - s)
+    return items[index].innovation if index >= 0 else None

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from laglab_control.estimators import kalman
 from laglab_control.estimators.interface import Applied, Estimator, Measured, by_sampling
-from laglab_control.estimators.kalman import Belief, Compared, Innovation
+from laglab_control.estimators.kalman import Belief, Innovation
 from laglab_control.model import Matrix, Model, Vector
 
 
@@ -17,7 +17,7 @@ class EkfState(NamedTuple):
     x: Vector
     P: Matrix
     newest: int
-    compared: Compared | None
+    innovation: Innovation | None
 
 
 @dataclass(frozen=True)
@@ -28,25 +28,24 @@ class Ekf(Estimator[EkfState]):
 
     def start(self, x: Vector, P: Matrix) -> EkfState:
         """The prior of tick 0."""
-        return EkfState(0, x, P, newest=-1, compared=None)
+        return EkfState(0, x, P, newest=-1, innovation=None)
 
     def predict(self, state: EkfState, u: Vector) -> EkfState:
         """(27)."""
         x, P = self.model.predict(state.x, state.P, u)
-        return EkfState(state.tick + 1, x, P, state.newest, compared=None)
+        return EkfState(state.tick + 1, x, P, state.newest, innovation=None)
 
     def correct(
         self, state: EkfState, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
     ) -> EkfState:
         """(8) for every measurement newer than all before; it has no past to correct."""
-        tick, x, P, newest, compared = state
+        tick, x, P, newest, innovation = state
         for s, z in by_sampling(measurements, tick):
             if s > newest:
-                compared = Compared(Belief(x, P), z)
-                x, P = kalman.correct(self.model, *compared)
+                (x, P), innovation = kalman.correct(self.model, Belief(x, P), z)
                 newest = s
-        return EkfState(tick, x, P, newest, compared)
+        return EkfState(tick, x, P, newest, innovation)
 
     def innovation(self, state: EkfState) -> Innovation | None:
         """z_s - h(x^-_k)."""
-        return kalman.innovation(self.model, state.compared)
+        return state.innovation

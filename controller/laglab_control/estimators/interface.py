@@ -92,8 +92,13 @@ class Estimator(Protocol[S]):
         return state
 
     def innovation(self, state: S) -> Innovation | None:
-        """Of the newest measurement used at this tick, as the estimator saw it; None without."""
+        """Of the newest measurement that the last `correct` was given, as the estimator saw it;
+        None when it was given none, or did not use it."""
         ...
+
+    def restart(self, state: S, x: Vector, P: Matrix) -> S:
+        """Tick 0 again, with the prior x (d,), P (d, d); what else has been learned is kept."""
+        return self.start(x, P)
 
     def warning(self, state: S) -> str | None:
         """What nobody who relies on this estimate must overlook; None while there is nothing."""

@@ -37,6 +37,13 @@ class Innovation(NamedTuple):
     S: Matrix
 
 
+class Corrected(NamedTuple):
+    """What a measurement has made of a belief."""
+
+    posterior: Belief
+    innovation: Innovation
+
+
 def innovation(model: Model, compared: Compared | None) -> Innovation | None:
     """Of the comparison; None where there was none."""
     if compared is None:
@@ -47,15 +54,32 @@ def innovation(model: Model, compared: Compared | None) -> Innovation | None:
     return Innovation(model.innovation(z, model.h(x)), S)
 
 
-def correct(model: Model, prior: Belief, z: Vector) -> Belief:
+def normalised_squared(innovation: Innovation) -> float:
+    """The NIS, v^T S^-1 v."""
+    v, S = innovation
+    if len(S) != 3:
+        return float(v.dot(_inverse(S)).dot(v))
+    (x, y, t), ((xx, xy, xt), (_, yy, yt), (_, _, tt)) = v.tolist(), S.tolist()
+    c_xx, c_xy, c_xt = yy * tt - yt * yt, xt * yt - xy * tt, xy * yt - xt * yy
+    determinant = xx * c_xx + xy * c_xy + xt * c_xt
+    if not determinant > ILL_CONDITIONED * xx * yy * tt:
+        return float(v.dot(_pseudo_inverse(S)).dot(v))
+    c_yy, c_yt, c_tt = xx * tt - xt * xt, xy * xt - xx * yt, xx * yy - xy * xy
+    squares = x * x * c_xx + y * y * c_yy + t * t * c_tt
+    return float((squares + 2 * (x * y * c_xy + x * t * c_xt + y * t * c_yt)) / determinant)
+
+
+def correct(model: Model, prior: Belief, z: Vector) -> Corrected:
     """(8), with P+ in Joseph's form, which stays positive definite under rounding."""
     x, P = prior
     H, R = model.H(x), model.measurement_noise(x)
     PHt = P.dot(H.T)
-    K = gain(PHt, H.dot(PHt) + R)
+    S = H.dot(PHt) + R
+    K = gain(PHt, S)
     B = identity(len(x)) - K.dot(H)
-    posterior = x + K.dot(model.innovation(z, model.h(x)))
-    return Belief(posterior, _sound(symmetric(B.dot(P).dot(B.T) + K.dot(R).dot(K.T))))
+    v = model.innovation(z, model.h(x))
+    P = _sound(symmetric(B.dot(P).dot(B.T) + K.dot(R).dot(K.T)))
+    return Corrected(Belief(x + K.dot(v), P), Innovation(v, S))
 
 
 def _sound(P: Matrix) -> Matrix:

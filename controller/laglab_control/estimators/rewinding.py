@@ -83,6 +83,10 @@ class Rewinding(Generic[S]):
         inner, arrived, past = state
         return RewindingState(self.estimator.expect(inner, s), arrived, past)
 
+    def restart(self, state: RewindingState[S], x: Vector, P: Matrix) -> RewindingState[S]:
+        """The estimator's own."""
+        return RewindingState(self.estimator.restart(state.state, x, P), (), logged())
+
     def innovation(self, state: RewindingState[S]) -> Innovation | None:
         """The estimator's own."""
         return self.estimator.innovation(state.state)

@@ -9,7 +9,7 @@ import numpy as np
 
 from laglab_control.angle import wrap
 from laglab_control.limits import Positive, check, finite_pose
-from laglab_control.model import Vector
+from laglab_control.model import Matrix, Vector
 
 
 class Demand(NamedTuple):
@@ -28,7 +28,8 @@ class Law:
     """Drives a pose [m, m, rad] to `goal`.
 
     `v_max` [m/s] and `omega_max` [rad/s] clamp the answer; `goal_tolerance` [m] is the distance
-    inside which the robot only turns. None switches each of them off, as in the paper.
+    inside which the robot only turns; `caution` [m] is the standard deviation of the estimated
+    position above which it drives the more slowly. None switches each of them off, as in the paper.
     Raises ConfigError, naming the field, when one cannot be.
     """
 
@@ -39,6 +40,7 @@ class Law:
     v_max: Positive | None = None
     omega_max: Positive | None = None
     goal_tolerance: Positive | None = None
+    caution: Positive | None = None
 
     def __post_init__(self) -> None:
         check(self)
@@ -56,6 +58,16 @@ class Law:
             v, omega = self._polar(rho, alpha=wrap(psi - theta), phi=wrap(psi - theta_goal))
             at_goal = False
         return Demand(_clamp(v, self.v_max), _clamp(omega, self.omega_max), at_goal)
+
+    def slowed(self, demand: Demand, P: Matrix) -> Demand:
+        """As slow as the claimed covariance P (3, 3) of the pose makes advisable."""
+        if self.caution is None:
+            return demand
+        variance = max(float(P[0, 0]), float(P[1, 1]))
+        if variance <= self.caution**2:
+            return demand
+        share = self.caution / math.sqrt(variance)
+        return Demand(share * demand.v, share * demand.omega, demand.at_goal)
 
     def _holds(self, rho: float, at_goal: bool) -> bool:
         """Entered below the tolerance, left only above twice the tolerance."""

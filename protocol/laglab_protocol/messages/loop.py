@@ -25,6 +25,9 @@ DIALECT_VERSION = 2
 
 UNKNOWN_DELAY = 65535
 
+RECALLED = 12
+"""Ticks that one LAGLAB_APPLIED tells of."""
+
 ROBOT_SYSTEM, ROBOT_COMPONENT = 1, 1
 STATION_SYSTEM, STATION_COMPONENT = 200, 190
 
@@ -125,6 +128,25 @@ class Settings(Message, frozen=True):
     dialect: int = DIALECT_VERSION
 
 
+class Recall(Message, frozen=True):
+    """Station: which speeds were in force at `count` ticks from `first` on?"""
+
+    first: int
+    count: int
+    target_system: int
+    target_component: int
+
+
+class Applied(Message, frozen=True):
+    """Robot: the speeds in force on [t_j, t_{j+1}) [m/s, rad/s], j = first ... first + count - 1;
+    NaN: not known any more."""
+
+    v: tuple[float, ...]
+    omega: tuple[float, ...]
+    first: int
+    count: int
+
+
 WRITTEN_OUT: dict[str, type[Message]] = {
     "LAGLAB_TICK": Tick,
     "LAGLAB_MEASUREMENT": Measurement,
@@ -132,6 +154,8 @@ WRITTEN_OUT: dict[str, type[Message]] = {
     "LAGLAB_ESTIMATE": Estimate,
     "LAGLAB_END": End,
     "LAGLAB_SETTINGS": Settings,
+    "LAGLAB_RECALL": Recall,
+    "LAGLAB_APPLIED": Applied,
     **STANDARD,
 }
 

@@ -235,6 +235,9 @@ class MessageInterval(Message, frozen=True):
     message_id: int
 
 
+MAV_SEVERITY_WARNING = 4
+
+
 class Statustext(Message, frozen=True):
     """A line for a person (severity: MAV_SEVERITY), at most 50 bytes."""
 

@@ -18,6 +18,7 @@ from laglab_control import (
     DelayedEkf,
     Echo,
     Estimator,
+    Law,
     LiteralPopf,
     ReplayedInputs,
     RobotModel,
@@ -29,6 +30,9 @@ Array = NDArray[np.float64]
 
 OURS = ("ekf", "popf", "popf-exact", "delayed-ekf")
 FILTERPY = "filterpy's EKF"
+GUARDED = "delayed-ekf, guarded"
+STANDING = Law(v_max=1e-9, omega_max=1e-9)
+"""The measurements are of a robot that stands still: faster commands would contradict them."""
 START = np.zeros(3)
 P_0 = np.eye(3) * 1e-6
 """Small enough for popf's gain to stay below its delay limit at every delay measured."""
@@ -112,7 +116,9 @@ def filters() -> dict[str, Ticks]:
 
 def controllers() -> dict[str, Ticks]:
     """The whole of a tick but for the messages: filter, extrapolation over n = m ticks, law."""
-    return {name: partial(_controller_tick, name) for name in OURS}
+    contenders: dict[str, Ticks] = {name: partial(_controller_tick, name, False) for name in OURS}
+    contenders[GUARDED] = partial(_controller_tick, "delayed-ekf", True)
+    return contenders
 
 
 def _estimator_tick(estimator: Estimator[Any], drive: Drive, m: int) -> float:
@@ -126,9 +132,14 @@ def _estimator_tick(estimator: Estimator[Any], drive: Drive, m: int) -> float:
     return (time.perf_counter() - started) / (len(drive.inputs) - m)
 
 
-def _controller_tick(name: str, drive: Drive, m: int) -> float:
+def _controller_tick(name: str, guard: bool, drive: Drive, m: int) -> float:
     config = StationConfig(
-        estimator=name, initial_estimate=START, initial_covariance=P_0, command_delay=m
+        estimator=name,
+        law=STANDING,
+        initial_estimate=START,
+        initial_covariance=P_0,
+        command_delay=m,
+        guard=guard,
     )
     controller = Controller(config)
     arrivals = constant_delay(drive.measurements, m)

@@ -20,5 +20,5 @@ def compare(
     require(DRAWING)
     picture_place(out)
     opened = [open_run(directory) for directory in runs]
-    save(draw_side_by_side([(run.drawn, run.scenario) for run in opened]), out)
+    save(draw_side_by_side([(run.drawn, run.scenario, run.alarms) for run in opened]), out)
     print(out)

@@ -14,9 +14,8 @@ from laglab.extras import REHEARSING, require
 from laglab.progress import tracked
 from laglab.results.figure import picture_place, save
 from laglab.scenario import Scenario
-from laglab.studies.consistency import nth, verdict
+from laglab.studies.consistency import nth, samples, verdict
 from laglab.studies.consistency_report import consistency_table, draw_consistency
-from laglab.studies.workers import samples
 from laglab_control import ESTIMATORS
 
 JUDGED = ("ekf", "popf", "popf-exact", "delayed-ekf")

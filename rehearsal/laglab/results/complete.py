@@ -36,7 +36,7 @@ from laglab_gateway import (
     trace_pieces,
 )
 from laglab_protocol import EndReason, Frame, decode
-from laglab_station import heard, read_session
+from laglab_station import StationReport, heard, read_session
 
 
 class Way(NamedTuple):
@@ -154,6 +154,13 @@ def summarise(
     )
 
 
+def _after_alarms(station: StationReport | None) -> str:
+    if station is None or not station.alarms:
+        return ""
+    times = "an alarm" if station.alarms_raised == 1 else f"{station.alarms_raised} alarms"
+    return f" after {times}, the first at tick {station.alarms[0].tick}"
+
+
 def _final(end: Trace, scenario: Scenario) -> Final:
     """At the last tick; of what is told later or not at all, the last that is known."""
     pose = robot_pose(end)
@@ -181,7 +188,7 @@ def _verdict(ending: Ending, final: Final, converged: bool, ticks: int, measured
             return f"stopped at tick {tick}: the other side failed"
         case EndReason.DISPLACED:
             return f"stopped at tick {tick}: another station has taken over"
-    word = "converged" if converged else "did not converge"
+    word = ("converged" if converged else "did not converge") + _after_alarms(ending.station)
     seen = " as measured" if measured else ""
     if final.rho is None or final.theta_error is None:
         return f"{word}: where the robot is at the end is not known"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -38,26 +38,27 @@ def empty_figure(width: float, height: float) -> Figure:
     return Picture(figsize=(width, height), layout="constrained")
 
 
-def draw(trace: Trace, scenario: Scenario) -> Figure:
+def draw(trace: Trace, scenario: Scenario, alarms: Sequence[int] = ()) -> Figure:
     """Three panels as in Figs. 4 to 7: path in the plane, heading, speeds; or as in Fig. 8, where
-    estimators are compared."""
+    estimators are compared. `alarms` are ticks to be marked."""
     if not scenario.estimator.compare:
-        return draw_side_by_side([(trace, scenario)])
+        return draw_side_by_side([(trace, scenario, alarms)])
     deviations = {scenario.estimator.kind: deviation(trace, loop_estimates(trace))}
     for name in scenario.estimator.compare:
         deviations[name] = deviation(trace, shadow_estimates(trace, name))
     return draw_deviations(trace["time"], deviations, scenario)
 
 
-def draw_side_by_side(runs: Sequence[tuple[Trace, Scenario]]) -> Figure:
+def draw_side_by_side(runs: Sequence[tuple[Trace, Scenario, Sequence[int]]]) -> Figure:
     """The same three panels for each run, a row each."""
     figure = empty_figure(13, 4 * len(runs))
     rows = figure.subfigures(len(runs), 1, squeeze=False)[:, 0]
-    for row, (trace, scenario) in zip(rows, runs, strict=True):
+    for row, (trace, scenario, alarms) in zip(rows, runs, strict=True):
         plane, heading, speeds = row.subplots(1, 3)
         draw_path(plane, trace, scenario)
         draw_heading(heading, trace, scenario)
         draw_speeds(speeds, trace)
+        mark_alarms((heading, speeds), [tick * scenario.sample_time for tick in alarms])
         row.suptitle(title(scenario))
     return figure
 
@@ -100,6 +101,16 @@ def draw_speeds(axes: Axes, trace: Trace) -> None:
     axes.set(xlabel="t [s]", title="speeds")
     axes.legend()
     axes.grid(alpha=0.3)
+
+
+def mark_alarms(panels: Iterable[Axes], times: Sequence[float]) -> None:
+    """A dashed line where the estimate was found to be wrong."""
+    for axes in panels:
+        for number, time in enumerate(times):
+            label = None if number else "alarm"
+            axes.axvline(time, color="C3", linestyle="--", linewidth=1, label=label)
+        if times:
+            axes.legend()
 
 
 def draw_deviations(

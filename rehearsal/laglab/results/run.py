@@ -85,7 +85,13 @@ class Run:
 
     def figure(self) -> Figure:
         """The run as a picture, to be shown or saved. Needs matplotlib."""
-        return draw(self.drawn, self.scenario)
+        return draw(self.drawn, self.scenario, self.alarms)
+
+    @property
+    def alarms(self) -> list[int]:
+        """The ticks at which the estimate was found to be wrong; the first hundred at most."""
+        station = self.summary.station
+        return [alarm.tick for alarm in station.alarms] if station else []
 
     @property
     def drawn(self) -> Trace:

@@ -6,6 +6,9 @@ from laglab.results.summary import Errors, Summary
 from laglab_gateway import DirectionReport, LinkReport, TimingReport
 from laglab_station import StationReport
 
+SHOWN = 5
+"""Alarms."""
+
 
 def results_table(summary: Summary) -> Table:
     """Name and value, a row each."""
@@ -90,10 +93,21 @@ def _station_rows(station: StationReport) -> dict[str, str]:
     """What the station found out by itself: the delays, and its own speed."""
     delays = f"n {station.n_seen}, m {station.m_seen} ticks"
     rows = {"delays as the station saw them": delays}
+    if station.alarms:
+        rows["alarms at ticks"] = alarm_ticks(station)
+    if station.gated:
+        rows["wild measurements"] = f"{station.gated}, not used"
     if station.tick_p50_s is not None and station.tick_p99_s is not None:
         p50, p99 = 1e6 * station.tick_p50_s, 1e6 * station.tick_p99_s
         rows["the station's answer to a tick"] = f"p50 {p50:.0f} µs, p99 {p99:.0f} µs"
     return rows
+
+
+def alarm_ticks(station: StationReport) -> str:
+    """The first ones, and how many more."""
+    ticks = ", ".join(str(alarm.tick) for alarm in station.alarms[:SHOWN])
+    more = station.alarms_raised - SHOWN
+    return ticks + (f" and {more} more" if more > 0 else "")
 
 
 def _speed(summary: Summary) -> str:
@@ -106,9 +120,15 @@ def _speed(summary: Summary) -> str:
 def warnings(summary: Summary) -> list[str]:
     """What the reader must not overlook."""
     said = list(summary.warnings)
+    if summary.station:
+        said += [f"alarm at tick {tick}: {cause}" for tick, cause in _alarms(summary.station)]
     if summary.timing and (missed := summary.timing.missed_deadlines):
         said.append(
             f"{missed} of {summary.ticks} ticks began more than a tick late: this machine "
             "cannot keep up; take a smaller --speed"
         )
     return said
+
+
+def _alarms(station: StationReport) -> list[tuple[int, str]]:
+    return [(alarm.tick, alarm.cause) for alarm in station.alarms[:SHOWN]]

@@ -12,6 +12,11 @@ if TYPE_CHECKING:
     from laglab_fmu import Robot, RobotParameters
 
 
+SEEDS, NEXT_SEED = 2**31, 7919
+"""How many seeds there are, and how far apart those of a run are, of which each placing takes one:
+not a neighbour, which is likely to be another run's."""
+
+
 class FmuPlant:
     """The robot FMU, commanded by body speeds instead of wheel speeds."""
 
@@ -20,6 +25,7 @@ class FmuPlant:
         self._parameters = parameters
         self._wheel_radius = parameters.wheel_radius
         self._half_track = parameters.track / 2
+        self._placed = 0
         self._reading = Reading(*robot.read())
 
     def read(self) -> Reading:
@@ -33,10 +39,12 @@ class FmuPlant:
         self._reading = Reading(*self._robot.step(omega_left, omega_right))
 
     def place(self, x: float, y: float, theta: float) -> None:
-        """Start the FMU again from there; its noise starts again too."""
+        """Start the FMU again from there, with noise that it did not have before."""
         asked, start = (x, y, theta), self._parameters.start
         x, y, theta = (
             there if math.isnan(each) else each for each, there in zip(asked, start, strict=True)
         )
-        self._robot.reset(replace(self._parameters, start=(x, y, theta)))
+        self._placed += 1
+        seed = (self._parameters.seed + self._placed * NEXT_SEED) % SEEDS
+        self._robot.reset(replace(self._parameters, start=(x, y, theta), seed=seed))
         self._reading = Reading(*self._robot.read())

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from msgspec import Meta, Struct
+from msgspec import Meta, Raw, Struct
 
 from laglab_gateway import LinkReport, TimingReport
 from laglab_station import StationReport
@@ -64,9 +64,10 @@ class Failed(Struct, frozen=True, tag=True):
 
 
 class Computed(Struct, frozen=True, tag=True):
-    """A part of what was to be computed: tables of doubles by name, row by row."""
+    """One of the jobs is done."""
 
-    tables: dict[str, bytes]
+    number: int
+    answer: Raw
 
 
 class Ended(Struct, frozen=True, tag=True):

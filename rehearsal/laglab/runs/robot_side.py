@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 import laglab_fmu
+from laglab.runs.hand import MovedByHand
 from laglab.runs.plant import FmuPlant
 from laglab.scenario import Scenario
 from laglab_gateway import (
@@ -20,6 +21,7 @@ from laglab_gateway import (
     GatewayConfig,
     Parameter,
     Parameters,
+    Plant,
     RandomFates,
     RecordedFates,
     Relay,
@@ -136,7 +138,9 @@ def open_gateway(
     """The robot's side, its FMU loaded until the context ends."""
     parameters = robot_parameters(scenario)
     with laglab_fmu.Robot.open(scenario.plant.fmi, parameters) as robot:
-        plant = FmuPlant(robot, parameters)
+        plant: Plant = FmuPlant(robot, parameters)
+        if events := scenario.plant.event:
+            plant = MovedByHand(plant, events, scenario.sample_time)
         free_running = scenario.pace == "realtime"
         services = robot_services(scenario, free_running, armed=armed)
         yield Gateway(plant, gateway_config(scenario), link_fates(scenario), services, sender)

@@ -36,6 +36,7 @@ def station_config(scenario: Scenario) -> StationConfig:
         initial_estimate=scenario.first_estimate(),
         initial_covariance=scenario.estimator.initial_covariance * np.eye(3),
         command_delay=scenario.link.command_delay,
+        guard=scenario.estimator.guard,
     )
 
 

@@ -6,18 +6,20 @@ of them: Bar-Shalom, Li, Kirubarajan, "Estimation with Applications to Tracking 
 section 5.4.
 """
 
-from collections.abc import Sequence
-from statistics import NormalDist
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from laglab.interface import run
 from laglab.results.numbers import deviation
 from laglab.runs.station_side import robot_model
 from laglab.scenario import Scenario, changed
+from laglab.studies.workers import shared_out
 from laglab_control import ESTIMATORS, Replay, constant_delay, replay
+from laglab_control.chi_square import chi_square_bound
 from laglab_gateway import Trace
 
 Array = NDArray[np.float64]
@@ -88,14 +90,8 @@ def chi_square_bounds(seeds: int) -> tuple[float, float]:
     """Between which the average of NEES or NIS over the seeds lies with 95 % probability."""
     degrees = DEGREES * seeds
     tail = (1 - CONFIDENCE) / 2
-    low, high = (_chi_square_quantile(p, degrees) / seeds for p in (tail, 1 - tail))
+    low, high = (chi_square_bound(above, degrees) / seeds for above in (1 - tail, tail))
     return low, high
-
-
-def _chi_square_quantile(probability: float, degrees: int) -> float:
-    """Wilson and Hilferty 1931: the cube root is nearly normal; within 1 % from 30 degrees on."""
-    spread = 2 / (9 * degrees)
-    return float(degrees * (1 - spread + NormalDist().inv_cdf(probability) * np.sqrt(spread)) ** 3)
 
 
 def nth(scenario: Scenario, number: int) -> Scenario:
@@ -104,16 +100,48 @@ def nth(scenario: Scenario, number: int) -> Scenario:
     return changed(scenario, {"seed": scenario.seed + number, **drawn})
 
 
-def sample(scenario: Scenario, estimators: Sequence[str]) -> dict[str, Sample]:
-    """One loop with the scenario's own filter, and every filter on its record."""
+class Job(Struct, frozen=True):
+    """A seed to be judged."""
+
+    scenario: str
+    """As TOML."""
+    estimators: tuple[str, ...]
+
+
+class Judged(Struct, frozen=True):
+    """What became of it: a `Sample` of each filter, its columns side by side."""
+
+    samples: dict[str, bytes]
+
+
+def samples(
+    scenario: Scenario, estimators: Sequence[str], seeds: int, workers: int
+) -> Iterator[dict[str, Sample]]:
+    """Each seed's loop, and every filter on its record; in the order in which they are done.
+
+    Raises: RunError, when a worker fails or dies.
+    """
+    jobs = [Job(nth(scenario, number).to_toml(), tuple(estimators)) for number in range(seeds)]
+    for _, judged in shared_out(judge, jobs, workers):
+        yield {name: _unpacked(table) for name, table in judged.samples.items()}
+
+
+def judge(job: Job) -> Judged:
+    """In a worker: one loop with the scenario's own filter, and every filter on its record."""
+    scenario = Scenario.from_toml(job.scenario)
     trace = run(scenario).trace
     answer = {}
-    for name in estimators:
+    for name in job.estimators:
         replayed = _reestimated(scenario, name, trace)
         error, P = deviation(trace, replayed.estimates), replayed.covariances
         variances = np.diagonal(P, axis1=1, axis2=2)
-        answer[name] = Sample(error, variances, _nees(error, P), replayed.nis)
-    return answer
+        answer[name] = np.column_stack((error, variances, _nees(error, P), replayed.nis)).tobytes()
+    return Judged(answer)
+
+
+def _unpacked(table: bytes) -> Sample:
+    columns = np.frombuffer(table).reshape(-1, 8)
+    return Sample(columns[:, :3], columns[:, 3:6], columns[:, 6], columns[:, 7])
 
 
 def _reestimated(scenario: Scenario, name: str, trace: Trace) -> Replay:

@@ -1,86 +1,92 @@
-"""The seeds of a consistency test, shared out among processes of our own."""
+"""The jobs of a study, shared out among processes of our own."""
 
-from collections.abc import Iterator, Sequence
+import importlib
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
 from queue import Empty, Queue
+from typing import Any, NamedTuple, TypeVar, get_type_hints
 
-import numpy as np
-from msgspec import Struct
+import msgspec
+from msgspec import Raw, Struct
 
 from laglab.errors import LaglabError, RunError
 from laglab.runs.child import LOOK_UP, Inbox, Tell, started
 from laglab.runs.errors import SIDE_ERRORS
 from laglab.runs.reports import Computed, Ended, Failed
-from laglab.scenario import Scenario
-from laglab.studies.consistency import Sample, nth, sample
+
+Job = TypeVar("Job", bound=Struct)
+Answer = TypeVar("Answer", bound=Struct)
 
 
 class Share(Struct, frozen=True):
-    """A worker's seeds: of so many every `step`th, counted from `first`."""
+    """A worker's part of the jobs, by their numbers."""
 
-    scenario: str
-    """As TOML."""
-    estimators: tuple[str, ...]
-    first: int
-    seeds: int
-    step: int
-
-    @property
-    def numbers(self) -> range:
-        """Of the seeds."""
-        return range(self.first, self.seeds, self.step)
+    function: str
+    """MODULE:FUNCTION, which does one."""
+    jobs: dict[int, Raw]
 
 
-def samples(
-    scenario: Scenario, estimators: Sequence[str], seeds: int, workers: int
-) -> Iterator[dict[str, Sample]]:
-    """Each seed's loop, and every filter on its record; in the order in which they are done.
+class _Kinds(NamedTuple):
+    """What a function that does jobs takes and gives."""
 
-    Raises: RunError, when a worker fails or dies.
+    job: type
+    answer: type
+
+    @classmethod
+    def of(cls, function: Callable[[Any], Any]) -> "_Kinds":
+        hints = get_type_hints(function)
+        answer = hints.pop("return")
+        (job,) = hints.values()
+        return cls(job, answer)
+
+
+def shared_out(
+    function: Callable[[Job], Answer], jobs: Sequence[Job], workers: int
+) -> Iterator[tuple[int, Answer]]:
+    """Each job's number and answer, in the order in which they are done.
+
+    `function` stands at the top of a module. Raises RunError, when a worker fails or dies.
     """
     inbox: Inbox = Queue()
+    kind = _Kinds.of(function).answer
+    target = f"{function.__module__}:{function.__qualname__}"
     with ExitStack() as stack:
         waiting = {}
-        for first in range(min(workers, seeds)):
-            share = Share(scenario.to_toml(), tuple(estimators), first, seeds, workers)
-            target = f"{judge.__module__}:{judge.__name__}"
-            child = stack.enter_context(started(f"worker {first + 1}", target, share, inbox))
-            waiting[child.name] = len(share.numbers)
+        for first in range(min(workers, len(jobs))):
+            numbers = range(first, len(jobs), workers)
+            share = Share(target, {i: Raw(msgspec.json.encode(jobs[i])) for i in numbers})
+            name = f"worker {first + 1}"
+            stack.enter_context(started(name, f"{__name__}:work", share, inbox))
+            waiting[name] = len(numbers)
         while any(waiting.values()):
-            yield from _arrived(inbox, waiting)
+            for number, answer in _arrived(inbox, waiting):
+                yield number, msgspec.json.decode(answer, type=kind)
 
 
-def _arrived(inbox: Inbox, waiting: dict[str, int]) -> Iterator[dict[str, Sample]]:
+def _arrived(inbox: Inbox, waiting: dict[str, int]) -> Iterator[tuple[int, Raw]]:
     """What the next letter holds; counts it as no longer waited for."""
     try:
         child, report = inbox.get(timeout=LOOK_UP)
     except Empty:
         return
     match report:
-        case Computed(tables):
+        case Computed(number, answer):
             waiting[child.name] -= 1
-            yield {name: _unpacked(table) for name, table in tables.items()}
+            yield number, answer
         case Failed(reason):
             raise RunError(reason)
         case Ended(how) if waiting[child.name]:
             raise RunError(how)
 
 
-def judge(share: Share, tell: Tell) -> None:
+def work(share: Share, tell: Tell) -> None:
     """In the worker."""
-    scenario = Scenario.from_toml(share.scenario)
+    module, _, name = share.function.partition(":")
+    function = getattr(importlib.import_module(module), name)
+    kind = _Kinds.of(function).job
     try:
-        for number in share.numbers:
-            judged = sample(nth(scenario, number), share.estimators)
-            tell(Computed({name: _packed(one) for name, one in judged.items()}))
+        for number, job in share.jobs.items():
+            answer = function(msgspec.json.decode(job, type=kind))
+            tell(Computed(number, Raw(msgspec.json.encode(answer))))
     except (LaglabError, *SIDE_ERRORS) as error:
         tell(Failed(str(error), begun=True))
-
-
-def _packed(one: Sample) -> bytes:
-    return np.column_stack(one).tobytes()
-
-
-def _unpacked(table: bytes) -> Sample:
-    columns = np.frombuffer(table).reshape(-1, 8)
-    return Sample(columns[:, :3], columns[:, 3:6], columns[:, 6], columns[:, 7])

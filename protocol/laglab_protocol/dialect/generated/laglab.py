@@ -6350,6 +6350,8 @@ MAVLINK_MSG_ID_LAGLAB_COMMAND = 52102
 MAVLINK_MSG_ID_LAGLAB_ESTIMATE = 52103
 MAVLINK_MSG_ID_LAGLAB_END = 52104
 MAVLINK_MSG_ID_LAGLAB_SETTINGS = 52105
+MAVLINK_MSG_ID_LAGLAB_RECALL = 52106
+MAVLINK_MSG_ID_LAGLAB_APPLIED = 52107
 MAVLINK_MSG_ID_SYS_STATUS = 1
 MAVLINK_MSG_ID_SYSTEM_TIME = 2
 MAVLINK_MSG_ID_PING = 4
@@ -6827,6 +6829,94 @@ class MAVLink_laglab_settings_message(MAVLink_message):
 # Define name on the class for backwards compatibility (it is now msgname).
 # Done with setattr to hide the class variable from mypy.
 setattr(MAVLink_laglab_settings_message, "name", mavlink_msg_deprecated_name_property())
+
+
+class MAVLink_laglab_recall_message(MAVLink_message):
+    """
+    Station to robot: which speeds were in force at these ticks? Asked
+    when measurements were lost, and with them what they tell of the
+    command in force. A robot that remembers answers with
+    LAGLAB_APPLIED; one that does not need not answer.
+    """
+
+    id = MAVLINK_MSG_ID_LAGLAB_RECALL
+    msgname = "LAGLAB_RECALL"
+    fieldnames = ["first", "count", "target_system", "target_component"]
+    ordered_fieldnames = ["first", "count", "target_system", "target_component"]
+    fieldtypes = ["uint32_t", "uint16_t", "uint8_t", "uint8_t"]
+    fielddisplays_by_name: Dict[str, str] = {}
+    fieldenums_by_name: Dict[str, str] = {}
+    fieldunits_by_name: Dict[str, str] = {}
+    native_format = bytearray(b"<IHBB")
+    orders = [0, 1, 2, 3]
+    lengths = [1, 1, 1, 1]
+    array_lengths = [0, 0, 0, 0]
+    crc_extra = 44
+    unpacker = struct.Struct("<IHBB")
+    instance_field = None
+    instance_offset = -1
+
+    def __init__(self, first: int, count: int, target_system: int, target_component: int):
+        MAVLink_message.__init__(self, MAVLink_laglab_recall_message.id, MAVLink_laglab_recall_message.msgname)
+        self._fieldnames = MAVLink_laglab_recall_message.fieldnames
+        self._instance_field = MAVLink_laglab_recall_message.instance_field
+        self._instance_offset = MAVLink_laglab_recall_message.instance_offset
+        self.first = first
+        self.count = count
+        self.target_system = target_system
+        self.target_component = target_component
+
+    def pack(self, mav: "MAVLink", force_mavlink1: bool = False) -> bytes:
+        return self._pack(mav, self.crc_extra, self.unpacker.pack(self.first, self.count, self.target_system, self.target_component), force_mavlink1=force_mavlink1)
+
+
+# Define name on the class for backwards compatibility (it is now msgname).
+# Done with setattr to hide the class variable from mypy.
+setattr(MAVLink_laglab_recall_message, "name", mavlink_msg_deprecated_name_property())
+
+
+class MAVLink_laglab_applied_message(MAVLink_message):
+    """
+    Robot to station, in answer to LAGLAB_RECALL, as late as
+    measurements are: the speeds that were in force, whatever made
+    them: a command, the failsafe, a stop. Sent in the datagram of a
+    tick, before LAGLAB_TICK, and counted there.
+    """
+
+    id = MAVLINK_MSG_ID_LAGLAB_APPLIED
+    msgname = "LAGLAB_APPLIED"
+    fieldnames = ["v", "omega", "first", "count"]
+    ordered_fieldnames = ["v", "omega", "first", "count"]
+    fieldtypes = ["double", "double", "uint32_t", "uint8_t"]
+    fielddisplays_by_name: Dict[str, str] = {}
+    fieldenums_by_name: Dict[str, str] = {}
+    fieldunits_by_name: Dict[str, str] = {"v": "m/s", "omega": "rad/s"}
+    native_format = bytearray(b"<ddIB")
+    orders = [0, 1, 2, 3]
+    lengths = [12, 12, 1, 1]
+    array_lengths = [12, 12, 0, 0]
+    crc_extra = 42
+    unpacker = struct.Struct("<12d12dIB")
+    instance_field = None
+    instance_offset = -1
+
+    def __init__(self, v: Sequence[float], omega: Sequence[float], first: int, count: int):
+        MAVLink_message.__init__(self, MAVLink_laglab_applied_message.id, MAVLink_laglab_applied_message.msgname)
+        self._fieldnames = MAVLink_laglab_applied_message.fieldnames
+        self._instance_field = MAVLink_laglab_applied_message.instance_field
+        self._instance_offset = MAVLink_laglab_applied_message.instance_offset
+        self.v = v
+        self.omega = omega
+        self.first = first
+        self.count = count
+
+    def pack(self, mav: "MAVLink", force_mavlink1: bool = False) -> bytes:
+        return self._pack(mav, self.crc_extra, self.unpacker.pack(self.v[0], self.v[1], self.v[2], self.v[3], self.v[4], self.v[5], self.v[6], self.v[7], self.v[8], self.v[9], self.v[10], self.v[11], self.omega[0], self.omega[1], self.omega[2], self.omega[3], self.omega[4], self.omega[5], self.omega[6], self.omega[7], self.omega[8], self.omega[9], self.omega[10], self.omega[11], self.first, self.count), force_mavlink1=force_mavlink1)
+
+
+# Define name on the class for backwards compatibility (it is now msgname).
+# Done with setattr to hide the class variable from mypy.
+setattr(MAVLink_laglab_applied_message, "name", mavlink_msg_deprecated_name_property())
 
 
 class MAVLink_sys_status_message(MAVLink_message):
@@ -16908,6 +16998,8 @@ mavlink_map: Dict[int, Type[MAVLink_message]] = {
     MAVLINK_MSG_ID_LAGLAB_ESTIMATE: MAVLink_laglab_estimate_message,
     MAVLINK_MSG_ID_LAGLAB_END: MAVLink_laglab_end_message,
     MAVLINK_MSG_ID_LAGLAB_SETTINGS: MAVLink_laglab_settings_message,
+    MAVLINK_MSG_ID_LAGLAB_RECALL: MAVLink_laglab_recall_message,
+    MAVLINK_MSG_ID_LAGLAB_APPLIED: MAVLink_laglab_applied_message,
     MAVLINK_MSG_ID_SYS_STATUS: MAVLink_sys_status_message,
     MAVLINK_MSG_ID_SYSTEM_TIME: MAVLink_system_time_message,
     MAVLINK_MSG_ID_PING: MAVLink_ping_message,
@@ -17522,7 +17614,7 @@ class MAVLink(object):
         with this tick arrives.
 
         tick                      : The tick that has begun; tick k is at k times the sample time. (type:uint32_t)
-        measurements              : How many LAGLAB_MEASUREMENT frames precede this message in its datagram. (type:uint8_t)
+        measurements              : How many LAGLAB_MEASUREMENT and LAGLAB_APPLIED frames precede this message in its datagram. (type:uint8_t)
 
         """
         return MAVLink_laglab_tick_message(tick, measurements)
@@ -17535,7 +17627,7 @@ class MAVLink(object):
         with this tick arrives.
 
         tick                      : The tick that has begun; tick k is at k times the sample time. (type:uint32_t)
-        measurements              : How many LAGLAB_MEASUREMENT frames precede this message in its datagram. (type:uint8_t)
+        measurements              : How many LAGLAB_MEASUREMENT and LAGLAB_APPLIED frames precede this message in its datagram. (type:uint8_t)
 
         """
         self.send(self.laglab_tick_encode(tick, measurements), force_mavlink1=force_mavlink1)
@@ -17582,7 +17674,7 @@ class MAVLink(object):
         tick                      : The tick that this command answers. (type:uint32_t)
         target_system             : System ID of the robot. (type:uint8_t)
         target_component          : Component ID of the robot. (type:uint8_t)
-        estimates                 : How many LAGLAB_ESTIMATE frames of this tick precede this message: 0 or 1. (type:uint8_t)
+        estimates                 : How many LAGLAB_ESTIMATE and LAGLAB_RECALL frames precede this message: 0 or 1 of each. (type:uint8_t)
 
         """
         return MAVLink_laglab_command_message(v, omega, tick, target_system, target_component, estimates)
@@ -17597,7 +17689,7 @@ class MAVLink(object):
         tick                      : The tick that this command answers. (type:uint32_t)
         target_system             : System ID of the robot. (type:uint8_t)
         target_component          : Component ID of the robot. (type:uint8_t)
-        estimates                 : How many LAGLAB_ESTIMATE frames of this tick precede this message: 0 or 1. (type:uint8_t)
+        estimates                 : How many LAGLAB_ESTIMATE and LAGLAB_RECALL frames precede this message: 0 or 1 of each. (type:uint8_t)
 
         """
         self.send(self.laglab_command_encode(v, omega, tick, target_system, target_component, estimates), force_mavlink1=force_mavlink1)
@@ -17699,6 +17791,66 @@ class MAVLink(object):
 
         """
         self.send(self.laglab_settings_encode(sample_time, wheel_radius, track, v_max, omega_max, command_delay, measurement_delay, dialect), force_mavlink1=force_mavlink1)
+
+    def laglab_recall_encode(self, first: int, count: int, target_system: int, target_component: int) -> MAVLink_laglab_recall_message:
+        """
+        Station to robot: which speeds were in force at these ticks? Asked
+        when measurements were lost, and with them what they tell of
+        the command in force. A robot that remembers answers with
+        LAGLAB_APPLIED; one that does not need not answer.
+
+        first                     : The first tick asked for. (type:uint32_t)
+        count                     : So many ticks from there on. (type:uint16_t)
+        target_system             : System ID of the robot. (type:uint8_t)
+        target_component          : Component ID of the robot. (type:uint8_t)
+
+        """
+        return MAVLink_laglab_recall_message(first, count, target_system, target_component)
+
+    def laglab_recall_send(self, first: int, count: int, target_system: int, target_component: int, force_mavlink1: bool = False) -> None:
+        """
+        Station to robot: which speeds were in force at these ticks? Asked
+        when measurements were lost, and with them what they tell of
+        the command in force. A robot that remembers answers with
+        LAGLAB_APPLIED; one that does not need not answer.
+
+        first                     : The first tick asked for. (type:uint32_t)
+        count                     : So many ticks from there on. (type:uint16_t)
+        target_system             : System ID of the robot. (type:uint8_t)
+        target_component          : Component ID of the robot. (type:uint8_t)
+
+        """
+        self.send(self.laglab_recall_encode(first, count, target_system, target_component), force_mavlink1=force_mavlink1)
+
+    def laglab_applied_encode(self, v: Sequence[float], omega: Sequence[float], first: int, count: int) -> MAVLink_laglab_applied_message:
+        """
+        Robot to station, in answer to LAGLAB_RECALL, as late as measurements
+        are: the speeds that were in force, whatever made them: a
+        command, the failsafe, a stop. Sent in the datagram of a tick,
+        before LAGLAB_TICK, and counted there.
+
+        v                         : Forward speed in force on the interval that begins at tick first + i; NaN if that is not known any more. [m/s] (type:double)
+        omega                     : Turn rate in force on that interval, counter-clockwise positive. [rad/s] (type:double)
+        first                     : The tick of the first element. (type:uint32_t)
+        count                     : So many elements count. (type:uint8_t)
+
+        """
+        return MAVLink_laglab_applied_message(v, omega, first, count)
+
+    def laglab_applied_send(self, v: Sequence[float], omega: Sequence[float], first: int, count: int, force_mavlink1: bool = False) -> None:
+        """
+        Robot to station, in answer to LAGLAB_RECALL, as late as measurements
+        are: the speeds that were in force, whatever made them: a
+        command, the failsafe, a stop. Sent in the datagram of a tick,
+        before LAGLAB_TICK, and counted there.
+
+        v                         : Forward speed in force on the interval that begins at tick first + i; NaN if that is not known any more. [m/s] (type:double)
+        omega                     : Turn rate in force on that interval, counter-clockwise positive. [rad/s] (type:double)
+        first                     : The tick of the first element. (type:uint32_t)
+        count                     : So many elements count. (type:uint8_t)
+
+        """
+        self.send(self.laglab_applied_encode(v, omega, first, count), force_mavlink1=force_mavlink1)
 
     def sys_status_encode(self, onboard_control_sensors_present: int, onboard_control_sensors_enabled: int, onboard_control_sensors_health: int, load: int, voltage_battery: int, current_battery: int, battery_remaining: int, drop_rate_comm: int, errors_comm: int, errors_count1: int, errors_count2: int, errors_count3: int, errors_count4: int, onboard_control_sensors_present_extended: int = 0, onboard_control_sensors_enabled_extended: int = 0, onboard_control_sensors_health_extended: int = 0) -> MAVLink_sys_status_message:
         """

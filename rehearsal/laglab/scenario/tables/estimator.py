@@ -6,7 +6,7 @@ from pydantic import AfterValidator, WithJsonSchema
 
 from laglab.scenario.tables.table import POSE, Pose, Table
 from laglab_control import ESTIMATORS, StationConfig
-from laglab_gateway.values import NotNegative, described, saying
+from laglab_gateway.values import NotNegative, Switch, described, saying
 
 
 def _known(name: str) -> str:
@@ -54,3 +54,11 @@ class EstimatorTable(Table):
             "The filter's first pose: `start`, the robot's; `drawn` about it, by P_0; or a pose.",
         ),
     ] = "start"
+    guard: Annotated[
+        Switch,
+        described(
+            "-",
+            "Whether measurements that the estimate cannot explain raise an alarm, after which "
+            "the pose is found again; a single wild one is not used.",
+        ),
+    ] = StationConfig.guard

@@ -39,3 +39,12 @@ class LawTable(Table):
         as_in(Law, "goal_tolerance"),
         described("m", "Nearer to the goal the robot only turns, until it is twice as far again."),
     ] = Law.goal_tolerance
+    caution: Annotated[
+        Number | None,
+        as_in(Law, "caution"),
+        described(
+            "m",
+            "Where the claimed standard deviation of the position is larger, the robot drives the "
+            "more slowly, in proportion.",
+        ),
+    ] = Law.caution

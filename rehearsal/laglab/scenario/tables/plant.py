@@ -1,14 +1,32 @@
 """`[plant]`: the simulated robot, and what the controller believes of it."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from laglab.scenario.tables.table import Table, as_in
+from laglab.scenario.tables.table import POSE, Pose, Table, as_in
 from laglab_control import RobotModel
-from laglab_gateway.values import NotNegative, Number, Positive, described, saying
+from laglab_gateway.values import NotNegative, Number, Positive, Seconds, described, saying
 
 Share = Annotated[Number, Field(gt=-1, lt=1)]
+
+
+class PlantEvent(Table):
+    """Somebody moves the robot by hand: it is elsewhere from then on, at rest."""
+
+    at: Annotated[Seconds, described("s", "When, at the first tick that is not earlier.")] = 0.0
+    place: Annotated[Pose | None, described(POSE, "Where it is put down; either this or `by`.")] = (
+        None
+    )
+    by: Annotated[
+        Pose | None, described(POSE, "How far it is pushed from where it is, along x, y and θ.")
+    ] = None
+
+    @model_validator(mode="after")
+    def _somewhere(self) -> Self:
+        if (self.place is None) == (self.by is None):
+            raise ValueError("give either place or by")
+        return self
 
 
 class PlantTable(Table):
@@ -51,3 +69,6 @@ class PlantTable(Table):
         Field(ge=0, lt=1),
         described("1", "The part of the wheels' motion that is lost to slip."),
     ] = 0.0
+    event: Annotated[
+        tuple[PlantEvent, ...], described("-", "Times at which somebody moves the robot by hand.")
+    ] = ()

@@ -1,0 +1,5 @@
+"""Knowing when an estimate is wrong."""
+
+from laglab_control.guard.guard import Alarm, Guard, Watched
+
+__all__ = ["Alarm", "Guard", "Watched"]

@@ -1,0 +1,212 @@
+"""An estimator that is watched: wild measurements are not used, and when what is measured cannot be
+explained any more, an alarm is raised and the estimate begins again from what is measured."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from laglab_control.estimators.delayed_ekf import DelayedEkf, DelayedState
+from laglab_control.estimators.interface import Applied, Estimator, Measured, State, by_sampling
+from laglab_control.estimators.kalman import Belief, Innovation, normalised_squared
+from laglab_control.estimators.windows import RigidMotions
+from laglab_control.guard.evidence import WILD, Evidence, contradiction, no_evidence, weighed
+from laglab_control.guard.seen import Seen
+from laglab_control.model import Matrix, Vector
+from laglab_control.past.log import Log, append, logged
+from laglab_control.robot import RobotModel
+
+LOCATING = 100
+"""Measurements by which the pose is found again: P is then R/100, which every filter can start
+from (`popf` diverges from a P_0 as large as R, docs/theory.md)."""
+MEMORY = 1024
+"""Ticks for which inputs are kept."""
+
+
+class Alarm(NamedTuple):
+    """What is measured contradicts what is estimated."""
+
+    tick: int
+    cause: str
+
+
+class Watched(NamedTuple):
+    """An estimator's state, and what the guard knows; immutable."""
+
+    state: State
+    """Of the estimator, or while the pose is being found of the one that finds it. Its tick 0 is
+    tick `origin`."""
+    origin: int
+    aside: State | None
+    """While the pose is being found: the estimator's state when it was given up."""
+    found: int
+    """Measurements used since then."""
+    evidence: Evidence
+    inputs: Log[Vector]
+    """As believed or known, up to the one that led to the present."""
+    seen: Seen
+    gated: int
+    """Measurements that were too wild to be used."""
+    alarm: Alarm | None
+    """Raised at this tick."""
+
+    @property
+    def tick(self) -> int:
+        """k."""
+        return self.state.tick + self.origin
+
+    @property
+    def x(self) -> Vector | None:
+        """The estimate (d,)."""
+        return self.state.x
+
+    @property
+    def P(self) -> Matrix | None:
+        """Its covariance (d, d)."""
+        return self.state.P
+
+
+@dataclass(frozen=True, eq=False)
+class Guard(Estimator[Watched]):
+    """Around any estimator of the robot's pose.
+
+    Each measurement is tried: the estimator is a pure function, so that one which turns out to be
+    wild (its normalised innovation squared is beyond the 1 - 1e-6 quantile) is not taken. After an
+    alarm the estimate is the newest measurement with P = R, and a `delayed-ekf`, which copes with
+    that, stands in until LOCATING measurements have come; then the estimator goes on from there.
+    """
+
+    estimator: Estimator[Any]
+    model: RobotModel
+
+    @cached_property
+    def _locator(self) -> Estimator[Any]:
+        return DelayedEkf(self.model, RigidMotions(self.model))
+
+    def start(self, x: Vector, P: Matrix) -> Watched:
+        """The estimator's own."""
+        inner = self.estimator.start(x, P)
+        return Watched(inner, 0, None, 0, no_evidence(), logged(), Seen(), 0, None)
+
+    def predict(self, state: Watched, u: Vector) -> Watched:
+        """The estimator's own."""
+        inner, origin, aside, found, evidence, inputs, seen, gated, _ = state
+        inner = self._active(state).predict(inner, u)
+        inputs = append(inputs, u, MEMORY)
+        return Watched(inner, origin, aside, found, evidence, inputs, seen, gated, None)
+
+    def correct(
+        self,
+        state: Watched,
+        measurements: Sequence[Measured],
+        inputs: Sequence[Applied] = (),
+        settled: int | None = None,
+    ) -> Watched:
+        """Measurement by measurement, in the order of sampling.
+
+        `settled`: up to this tick the inputs are known. What was sampled later is used but proves
+        nothing: the robot may have done something else. None: all are known.
+        """
+        if inputs:
+            state = self._put_right(state, inputs)
+        for measured in by_sampling(measurements, state.tick):
+            state = self._take(state, measured, settled)
+        return state
+
+    def expect(self, state: Watched, s: int) -> Watched:
+        """The estimator's own."""
+        inner = self._active(state).expect(state.state, s - state.origin)
+        return state if inner is state.state else state._replace(state=inner)
+
+    def innovation(self, state: Watched) -> Innovation | None:
+        """The estimator's own."""
+        return self._active(state).innovation(state.state)
+
+    def warning(self, state: Watched) -> str | None:
+        """The estimator's own."""
+        return None if state.aside is not None else self.estimator.warning(state.state)
+
+    def _active(self, state: Watched) -> Estimator[Any]:
+        return self.estimator if state.aside is None else self._locator
+
+    def _put_right(self, state: Watched, inputs: Sequence[Applied]) -> Watched:
+        """With the inputs that were others than believed."""
+        items, length = state.inputs
+        tick = state.tick
+        first = tick - length
+        for j, u in inputs:
+            if first <= j < tick and items[j - first].tolist() != u.tolist():
+                return self._revised(state, {j: u for j, u in inputs if first <= j < tick})
+        return state
+
+    def _revised(self, state: Watched, known: Mapping[int, Vector]) -> Watched:
+        items, length = state.inputs
+        first = state.tick - length
+        inputs = [known.get(j, u) for j, u in enumerate(items[:length], start=first)]
+        since = [Applied(j - state.origin, u) for j, u in known.items() if j >= state.origin]
+        inner = self._active(state).correct(state.state, (), since)
+        return state._replace(state=inner, inputs=logged(*inputs))
+
+    def _take(self, state: Watched, measured: Measured, settled: int | None) -> Watched:
+        s, z = measured
+        if s in state.seen or s < state.origin:
+            return state
+        active = self._active(state)
+        tried = active.correct(state.state, [Measured(s - state.origin, z)])
+        innovation = active.innovation(tried)
+        if innovation is None or not (settled is None or s <= settled + 1):
+            return self._used(state._replace(state=tried, seen=state.seen.and_of(s)))
+        return self._judged(state, measured, tried, innovation)
+
+    def _judged(
+        self, state: Watched, measured: Measured, tried: State, innovation: Innovation
+    ) -> Watched:
+        nis, evidence = normalised_squared(innovation), state.evidence
+        cause, seen = None, state.seen.and_of(measured.tick)
+        if seen.newest == measured.tick:  # what is late was weighed by those after it
+            evidence = weighed(evidence, innovation, nis)
+            cause = contradiction(evidence, innovation)
+        if nis <= WILD:
+            state = state._replace(state=tried, seen=seen, evidence=evidence)
+            return self._begun_again(state, measured, cause) if cause else self._used(state)
+        state = state._replace(seen=seen, evidence=evidence, gated=state.gated + 1)
+        return self._begun_again(state, measured, cause) if cause else state
+
+    def _used(self, state: Watched) -> Watched:
+        """One more of those by which the pose is found, if it is being found."""
+        if state.aside is None:
+            return state
+        state = state._replace(found=state.found + 1)
+        return self._resumed(state) if state.found >= LOCATING else state
+
+    def _begun_again(self, state: Watched, measured: Measured, cause: str) -> Watched:
+        """The measurement is all that is known of the pose."""
+        aside = state.state if state.aside is None else state.aside
+        x = np.array(measured.z)
+        if state.x is not None and math.isfinite(state.x[2]):
+            x[2] += 2 * math.pi * round(float(state.x[2] - x[2]) / (2 * math.pi))
+        state = state._replace(aside=aside, found=1, evidence=no_evidence())
+        state = self._from(state, measured.tick, self._locator.start(x, self.model.R))
+        return state._replace(alarm=Alarm(state.tick, cause))
+
+    def _resumed(self, state: Watched) -> Watched:
+        """The pose is known again at the newest measurement's tick: the estimator goes on there."""
+        s, belief = self._found(state)
+        begun = self.estimator.restart(state.aside, *belief)
+        return self._from(state._replace(aside=None), s, begun)
+
+    def _found(self, state: Watched) -> tuple[int, Belief]:
+        assert isinstance(state.state, DelayedState), "the locator's"
+        newest = state.state.filtered.newest
+        return newest.tick + state.origin, newest.posterior
+
+    def _from(self, state: Watched, origin: int, inner: State) -> Watched:
+        """With `inner` as of tick `origin`, carried on to the present over the inputs since."""
+        active, tick = self._active(state), state.tick
+        items, length = state.inputs
+        for u in items[length - (tick - origin) : length]:
+            inner = active.predict(inner, u)
+        return state._replace(state=inner, origin=origin)

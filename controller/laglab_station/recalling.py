@@ -1,0 +1,38 @@
+"""Asking the robot what it did while nobody heard it."""
+
+from typing import NamedTuple
+
+from laglab_control.flight import Told
+
+PATIENCE = 5
+"""Ticks that a measurement may be late behind later ones, before what it tells is asked for."""
+AGAIN = 12
+"""Ticks after which a question that was not answered yet is asked again: it may be lost."""
+
+
+class Asked(NamedTuple):
+    """What was asked for so far."""
+
+    through: int = -1
+    """The newest tick asked for."""
+    again: int = 0
+    """At this tick the oldest that is still missing is asked for again."""
+
+
+class Question(NamedTuple):
+    """The ticks from `first` on."""
+
+    first: int
+    ticks: int
+
+
+def question(asked: Asked, told: Told, tick: int) -> tuple[Asked, Question | None]:
+    """What to ask at `tick`; None: nothing."""
+    missing = [each for each in told.missing if each <= told.known - PATIENCE]
+    again = tick + AGAIN
+    if asked.again > tick:  # some of it is on its way: ask for the rest alone
+        missing, again = [each for each in missing if each > asked.through], asked.again
+    if not missing:
+        return asked, None
+    asked = Asked(max(asked.through, missing[-1]), again)
+    return asked, Question(missing[0], missing[-1] - missing[0] + 1)

@@ -1,0 +1,203 @@
+"""An estimator that is watched: what it is told, and what the guard makes of it."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from laglab_control import ESTIMATORS, Alarm, Applied, Guard, Measured, RobotModel
+from laglab_control.guard import Watched
+from laglab_control.model import Matrix, Vector
+
+MODEL = RobotModel()
+P_0 = np.eye(3) * 1e-4
+U = np.array((0.5, 0.3))
+M = 5
+"""Ticks by which measurements are late."""
+
+
+def guarded(name: str = "delayed-ekf") -> Guard:
+    return Guard(ESTIMATORS[name].make(MODEL), MODEL)
+
+
+def driven(ticks: int, inputs: Iterable[Vector] = ()) -> list[Vector]:
+    """The poses of a robot that starts at 0 and drives a circle, or as the inputs say."""
+    poses = [np.zeros(3)]
+    for _, u in zip(range(ticks), list(inputs) or [U] * ticks, strict=False):
+        poses.append(MODEL.f(poses[-1], u))
+    return poses
+
+
+def sampled(poses: Sequence[Vector], seed: int) -> list[Measured]:
+    noise = np.random.default_rng(seed).multivariate_normal(np.zeros(3), MODEL.R, len(poses))
+    return [Measured(k, pose + v) for k, (pose, v) in enumerate(zip(poses, noise, strict=True))]
+
+
+def followed(
+    estimator: Any, measured: Sequence[Measured], x: Vector | None = None
+) -> list[Watched]:
+    """The states at every tick, each measurement M ticks late."""
+    state = estimator.start(np.zeros(3) if x is None else x, P_0)
+    states = []
+    for k in range(len(measured) + M):
+        if k:
+            state = estimator.predict(state, U)
+        state = estimator.correct(state, measured[k - M : k - M + 1] if k >= M else [])
+        states.append(state)
+    return states
+
+
+def alarms(states: Sequence[Watched]) -> list[Alarm]:
+    return [state.alarm for state in states if state.alarm]
+
+
+@pytest.mark.parametrize("name", [name for name in ESTIMATORS if name != "raw"])
+def test_while_nothing_is_wrong_it_is_the_estimator_bit_for_bit(name: str) -> None:
+    measured = sampled(driven(60), seed=1)
+    alone = followed(ESTIMATORS[name].make(MODEL), measured)
+    for said, watched in zip(alone, followed(guarded(name), measured), strict=True):
+        assert said.x is not None
+        assert watched.tick == said.tick
+        assert np.array_equal(said.x, watched.x)
+        assert np.array_equal(said.P, watched.P)
+
+
+def test_raw_which_claims_nothing_cannot_be_wrong_about_itself() -> None:
+    states = followed(guarded("raw"), sampled(driven(60), seed=1), x=np.full(3, 9.0))
+    assert alarms(states) == []
+
+
+def test_noise_alone_raises_no_alarm() -> None:
+    for seed in range(30):
+        states = followed(guarded(), sampled(driven(300), seed))
+        assert alarms(states) == []
+        assert states[-1].gated == 0
+
+
+@pytest.mark.parametrize("wild", [(50.0, 0.0, 0.0), (0.0, 0.9, 0.0), (0.0, 0.0, np.pi)])
+def test_a_wild_measurement_is_not_used_but_counted(wild: tuple[float, float, float]) -> None:
+    measured = sampled(driven(100), seed=2)
+    measured[50] = Measured(50, measured[50].z + wild)
+    states = followed(guarded(), measured)
+    without = measured.copy()
+    without[50] = without[49]  # a repeat: nothing new
+    for state, never in zip(states, followed(guarded(), without), strict=True):
+        assert np.array_equal(state.x, never.x)
+    assert states[-1].gated == 1
+    assert alarms(states) == []
+
+
+def test_a_wild_one_that_is_late_and_told_twice_is_not_used_either() -> None:
+    guard, measured = guarded(), sampled(driven(30), seed=3)
+    state = guard.start(np.zeros(3), P_0)
+    for each in measured[1:]:
+        state = guard.predict(state, U)
+        if each.tick != 20:
+            state = guard.correct(state, [each])
+    wild = Measured(20, measured[20].z + 5.0)
+    after = guard.correct(state, [wild, wild])
+    assert np.array_equal(after.x, state.x)
+    assert after.gated == 1
+
+
+def moved(at: int, ticks: int) -> list[Vector]:
+    """The poses of a robot that somebody puts elsewhere, turned, and that drives on from there."""
+    poses = [*driven(at - 1), np.array((0.9, -0.4, -2.0))]
+    for _ in range(ticks - at):
+        poses.append(MODEL.f(poses[-1], U))
+    return poses
+
+
+@pytest.mark.parametrize("name", ["popf", "popf-exact", "delayed-ekf"])
+def test_a_robot_that_is_elsewhere_is_found_again(name: str) -> None:
+    poses = moved(at=150, ticks=400)
+    states = followed(guarded(name), sampled(poses, seed=4))
+    (alarm,) = alarms(states)
+    assert 150 + M <= alarm.tick < 150 + M + 10
+    assert "are not where the estimate has the robot" in alarm.cause
+    last = states[len(poses) - 1]
+    assert np.abs(MODEL.innovation(poses[-1], last.x)).max() < 0.05
+
+
+def test_the_error_after_an_alarm_is_what_is_claimed() -> None:
+    nees = []
+    for seed in range(40):
+        poses = moved(at=40, ticks=240)
+        states = followed(guarded(), sampled(poses, seed))
+        last = states[len(poses) - 1]
+        assert len(alarms(states)) == 1
+        e = MODEL.innovation(poses[-1], last.x)
+        nees.append(e @ np.linalg.solve(last.P, e))
+    assert 1.5 < np.mean(nees) < 5.0
+
+
+def test_a_drift_that_noise_hides_is_seen_too() -> None:
+    """The robot slides sideways by 4 cm/s; its sensor's noise is 10 cm."""
+    sliding = [pose + np.array((0.0, 0.0004 * k, 0.0)) for k, pose in enumerate(driven(500))]
+    first, *_ = alarms(followed(guarded(), sampled(sliding, seed=5)))
+    assert "on one side of the estimate" in first.cause
+
+
+def test_what_the_robot_did_unheard_proves_nothing() -> None:
+    """Inputs are not known after tick 100: the robot stands, the estimate drives on."""
+    poses = driven(100)
+    poses += [poses[-1]] * 100
+    guard, measured = guarded(), sampled(poses, seed=6)
+    state = guard.start(np.zeros(3), P_0)
+    for k in range(1, 200):
+        state = guard.predict(state, U)
+        state = guard.correct(state, [measured[k]] if k < 100 or k > 160 else [], settled=99)
+        assert state.alarm is None
+    assert state.gated == 0
+    stood = [Applied(j, np.zeros(2)) for j in range(100, 199)]
+    known = guard.correct(state, [], stood, settled=198)
+    assert np.hypot(*(known.x - poses[-1])[:2]) < 0.05
+    assert guard.correct(known, [Measured(199, measured[199].z)], (), 198).alarm is None
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    late=st.lists(st.integers(0, 30), min_size=150, max_size=150),
+    twice=st.sets(st.integers(1, 149)),
+    seed=st.integers(0, 1000),
+)
+def test_disorder_and_repeats_change_nothing_in_the_end(
+    late: list[int], twice: set[int], seed: int
+) -> None:
+    guard, measured = guarded(), sampled(driven(150), seed)
+    arriving: dict[int, list[Measured]] = {}
+    for each, by in zip(measured[1:], late, strict=True):
+        arriving.setdefault(each.tick + by, []).append(each)
+        if each.tick in twice:
+            arriving.setdefault(each.tick + by + 3, []).append(each)
+    state = guard.start(np.zeros(3), P_0)
+    alone = guard.estimator.start(np.zeros(3), P_0)
+    for k in range(1, 185):
+        state, alone = guard.predict(state, U), guard.estimator.predict(alone, U)
+        state = guard.correct(state, arriving.get(k, []))
+        alone = guard.estimator.correct(alone, arriving.get(k, []))
+        assert state.alarm is None
+    assert state.gated == 0
+    assert np.allclose(state.x, alone.x, rtol=0, atol=1e-12)
+
+
+def test_measurements_that_are_not_finite_do_not_reach_the_estimate() -> None:
+    measured = sampled(driven(60), seed=7)
+    measured[30] = Measured(30, np.array((np.nan, 0.0, np.inf)))
+    states = followed(guarded(), measured)
+    assert np.isfinite(states[-1].x).all()
+    assert states[-1].gated == 1
+
+
+def test_states_are_not_touched() -> None:
+    guard, measured = guarded("popf"), sampled(driven(40), seed=8)
+    states = followed(guard, measured)
+    kept: list[tuple[Vector, Matrix]] = [(s.x.copy(), s.P.copy()) for s in states]
+    for state in states[:-1]:
+        guard.correct(guard.predict(state, U * 3), [Measured(state.tick, np.ones(3))])
+    for state, (x, P) in zip(states, kept, strict=True):
+        assert np.array_equal(state.x, x)
+        assert np.array_equal(state.P, P)

@@ -1,0 +1,118 @@
+"""What the robot did while nobody heard it becomes known when the link is back."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import laglab
+from laglab.results.numbers import deviation, loop_estimates
+from laglab.runs.inline import InlineLink
+from laglab.runs.robot_side import Setup, open_robot
+from laglab.runs.station_side import make_station
+from laglab_gateway import MemoryRecorder, Surroundings, TraceRow, trace_of
+from laglab_gateway.services import Arming
+from laglab_protocol import Listener, Receiver, Sender
+
+SOON = 20
+"""Ticks beyond n + m within which all is known again."""
+
+
+def error_after(run: laglab.Run, quiet: int) -> float:
+    """The largest error of the estimate [m, rad] from n + m + SOON ticks after the first
+    measurement that crosses at or after tick `quiet`, when the link is ideal again."""
+    link = run.scenario.link
+    n, m = link.command_delay, link.measurement_delay
+    known = quiet + m + n + m + SOON
+    off = deviation(run.trace, loop_estimates(run.trace))[known:]
+    assert len(off) > 20, "the run goes on for a while"
+    return float(np.nanmax(np.abs(off)))
+
+
+@st.composite
+def bad_times(draw: st.DrawFn) -> tuple[list[dict[str, object]], float]:
+    """Stretches in which much or all is lost, either way or both; and when the last one is over."""
+    events, time = [], 0.3
+    for _ in range(draw(st.integers(1, 4))):
+        duration = draw(st.sampled_from([0.02, 0.1, 0.4, 1.2]))
+        direction = draw(st.sampled_from(["command", "measurement", "both"]))
+        loss = draw(st.sampled_from([0.3, 0.9, 1.0]))
+        events.append(
+            {"at": time, "duration": duration, "direction": direction, "link": {"loss": loss}}
+        )
+        time += duration + draw(st.sampled_from([0.03, 0.25, 0.6]))
+    return events, time
+
+
+@pytest.mark.slow
+@settings(max_examples=25, deadline=None)
+@given(
+    times=bad_times(),
+    delays=st.tuples(st.integers(0, 20), st.integers(0, 25)),
+    seed=st.integers(0, 10**6),
+    estimator=st.sampled_from(["delayed-ekf", "popf"]),
+)
+def test_whatever_was_lost_the_estimate_is_the_pose_again(
+    times: tuple[list[dict[str, object]], float],
+    delays: tuple[int, int],
+    seed: int,
+    estimator: str,
+) -> None:
+    events, over = times
+    n, m = delays
+    run = laglab.run(
+        "fig6",
+        {
+            "estimator.kind": estimator,
+            "law.v_max": 1.0,
+            "law.omega_max": 1.7,
+            "link.command_delay": n,
+            "link.measurement_delay": m,
+            "link.event": events,
+            "seed": seed,
+            "duration": over + (2 * m + n + SOON + 60) / 100,
+        },
+    )
+    assert error_after(run, round(over * 100)) < 1e-6
+
+
+@pytest.mark.parametrize("silent", [100, 900])
+def test_however_long_nobody_was_heard(silent: int) -> None:
+    """Up to the 1024 ticks that both sides remember; the robot has come to a standstill."""
+    event = {"at": 1.0, "duration": silent / 100, "link": {"loss": 1.0}}
+    overrides = {"estimator.kind": "delayed-ekf", "link.event": [event], "law.v_max": 1.0}
+    run = laglab.run("fig6", overrides | {"law.omega_max": 1.7, "duration": 3.0 + silent / 100})
+    assert error_after(run, 100 + silent) < 1e-6
+    assert run.summary.link is not None
+    assert run.summary.link.stops == 1
+
+
+class Hand(MemoryRecorder):
+    """Somebody near the robot, who disarms it in the middle of an outage, and arms it again."""
+
+    def __init__(self, arming: Arming, off: int, on: int) -> None:
+        super().__init__()
+        self._arming, self._off, self._on = arming, off, on
+
+    def row(self, row: TraceRow) -> None:
+        super().row(row)
+        if row.tick == self._off:
+            self._arming.disarm()
+        if row.tick == self._on:
+            self._arming.arm()
+
+
+def test_a_robot_that_was_disarmed_meanwhile_tells_so() -> None:
+    event = {"at": 1.0, "duration": 0.4, "direction": "measurement", "link": {"loss": 1.0}}
+    overrides = {"estimator.kind": "delayed-ekf", "link.event": [event], "law.v_max": 1.0}
+    scenario = laglab.load("fig6", overrides | {"duration": 2.5})
+    with open_robot(scenario, Setup()) as robot:
+        hand = Hand(robot.services.arming, 110, 125)
+        link = InlineLink(make_station(scenario, Sender(200, 190)), Receiver())
+        robot.serve(Surroundings(Listener(link, robot.codec.receiver), hand))
+    trace = trace_of(hand.rows)
+    assert (trace["v"][112:125] == 0).all()
+    assert (trace["v"][[110, 127]] > 0.5).all()
+    off = deviation(trace, loop_estimates(trace))
+    assert np.abs(off[140 + 20 : 150 + 20]).max() > 1e-3, "it takes a while to be told"
+    assert np.abs(off[140 + 20 + 30 + SOON :]).max() < 1e-6
