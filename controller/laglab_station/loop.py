@@ -190,6 +190,5 @@ class _Loop:
 
     def _tell_of_keys(self) -> None:
         if refused := self._listener.refused:
-            text = f"{self._link.name}: {refused} frames refused: not signed with this key"
-            self._station.warn("keys", text)
+            self._station.warn("keys", refused)
             self._look_around()

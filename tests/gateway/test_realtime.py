@@ -115,6 +115,7 @@ class SlowPlant(StillPlant):
         self._link = link
 
     def step(self, v: float, omega: float) -> None:
+        del v, omega
         self._link.time += 5 * PERIOD
 
 

@@ -42,6 +42,17 @@ def _warn(text: str) -> None:
     _say(f"warning: {text}")
 
 
+def _say_whom_we_wait_for(other: str, link: Endpoint) -> None:
+    """And what it is to do: two that both listen, or both call, never meet."""
+    match link.name.partition(":")[0]:
+        case "udpin":
+            _say(f"listening on {link.name}: waiting for {other}, which calls there (udpout)")
+        case "udpout":
+            _say(f"calling {link.name}: waiting for {other}, which listens there (udpin)")
+        case _:
+            _say(f"at {link.name}: waiting for {other}")
+
+
 @on_scenario
 def gateway(
     scenario: Scenario,
@@ -72,8 +83,9 @@ def gateway(
         for each in (link, *watched):
             refuse_open_door(each, key, unsigned)
         directory = place(scenario, out, force)
-        for each in (link, *watched):
-            _say(f"listening on {each.name}")
+        _say_whom_we_wait_for("the controller", link)
+        for each in watched:
+            _say(f"a ground station may look on at {each.name}")
         with progress_of(scenario) as told:
             around = Surroundings(
                 Listener(link, robot.codec.receiver),
@@ -107,7 +119,7 @@ def controller(
     """Be the remote station of SCENARIO: stabilise the robot at the other end."""
     with open_endpoint(endpoint) as link, open_station(scenario, key) as (station, receiver):
         directory = place(scenario, out, force, suffix="-station")
-        _say(f"calling {link.name}: waiting for the robot")
+        _say_whom_we_wait_for("the robot", link)
         with progress_of(scenario) as told:
             record = StationRecord(directory, scenario.sample_time, _warn, told)
             listener = Listener(link, receiver)
