@@ -34,7 +34,7 @@ def fmu(
     rounds: RoundsOption = 5,
     json: JsonOption = None,
 ) -> None:
-    """One step of the FMU: ours, FMPy's two ways, the fleet per robot, a plain C loop."""
+    """A step of the FMU: ours, FMPy's two ways, the fleet, plain C."""
     require(STEPPING)
     from laglab.bench import fmu as fmu_bench  # needs FMPy
 
@@ -44,14 +44,14 @@ def fmu(
 
 @app.command("codec")
 def codec(rounds: RoundsOption = 100, json: JsonOption = None) -> None:
-    """Encode and decode, signed and not: our codec, pymavlink's, and mavgen's C."""
+    """Encode and decode: our codec, pymavlink's, and mavgen's C."""
     with ExitStack() as stack:
         _run(codec_bench.bench(stack), rounds, json)
 
 
 @app.command("filter")
 def filter_(ticks: TicksOption = 1000, rounds: RoundsOption = 8, json: JsonOption = None) -> None:
-    """What a tick of each filter costs at m + n = 4, 40 and 400, beside filterpy's EKF."""
+    """A tick of each filter by its delays, beside filterpy's EKF."""
     _run(filter_bench.bench(ticks), rounds, json)
 
 
@@ -63,7 +63,7 @@ def loop(
     rounds: RoundsOption = 9,
     json: JsonOption = None,
 ) -> None:
-    """The lock-step loop over UDP and a pty, against a bare echo and against one by hand."""
+    """The lock-step loop, against a bare echo and one by hand."""
     require(STEPPING)
     from laglab.bench import loop as loop_bench  # needs FMPy
 

@@ -14,15 +14,13 @@ from laglab.extras import REHEARSING, require
 from laglab.progress import tracked
 from laglab.results.figure import picture_place, save
 from laglab.scenario import Scenario
+from laglab.scenario.tables.estimator import COMPARABLE
 from laglab.studies.consistency import nth, samples, verdict
 from laglab.studies.consistency_report import consistency_table, draw_consistency
-from laglab_control import ESTIMATORS
 
 JUDGED = ("ekf", "popf", "popf-exact", "delayed-ekf")
 MOST_SEEDS = 10_000
 """All that each of them gives is kept in memory: half a megabyte and more."""
-TABLE_WIDTH = 100
-"""Columns that the table takes; a narrower terminal wraps it, but shows it whole."""
 
 
 @partial(on_scenario, by_default="lab")
@@ -32,14 +30,20 @@ def consistency(
         int, typer.Option(min=2, max=MOST_SEEDS, help="Runs, each with noise of its own.")
     ] = 50,
     judged: Annotated[
-        list[str] | None, typer.Option("--judge", metavar="NAME", help="A filter to judge.")
+        list[str] | None,
+        typer.Option(
+            "--judge",
+            metavar="NAME",
+            help=f"A filter to judge; may be repeated: {', '.join(COMPARABLE)}.",
+            autocompletion=lambda: COMPARABLE,
+        ),
     ] = None,
     workers: Annotated[int, typer.Option(min=0, max=256, help="Processes; 0: one a core.")] = 0,
     out: Annotated[Path, typer.Option("--out", metavar="FILE", help="The picture.")] = Path(
         "consistency.png"
     ),
 ) -> None:
-    """Compare the covariance that each filter claims with the errors it makes, over many seeds.
+    """Hold what each filter claims against its errors, over seeds.
 
     The loop runs with the scenario's filter; all filters are judged on its records.
     """
@@ -52,7 +56,6 @@ def consistency(
     m = scenario.link.measurement_delay
     verdicts = [verdict(name, [sample[name] for sample in got], m) for name in names]
     console = Console()
-    console.width = max(console.width, TABLE_WIDTH)
     console.print(consistency_table(scenario, verdicts, seeds))
     save(draw_consistency(scenario, verdicts), out)
     console.print(f"picture in {out}", highlight=False)
@@ -67,7 +70,6 @@ def _check(scenario: Scenario, seeds: int) -> None:
 
 
 def _known(name: str) -> str:
-    if name not in ESTIMATORS or not ESTIMATORS[name].predicts:
-        known = ", ".join(name for name, kind in ESTIMATORS.items() if kind.predicts)
-        raise ScenarioError(f"--judge: {name!r} is not one of {known}")
+    if name not in COMPARABLE:
+        raise ScenarioError(f"--judge: {name!r} is not one of {', '.join(COMPARABLE)}")
     return name

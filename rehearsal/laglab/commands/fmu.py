@@ -28,7 +28,10 @@ def build(
         ),
     ] = False,
 ) -> None:
-    """Build Robot2.fmu, Robot3.fmu and Fleet3.fmu, for this machine or for all."""
+    """Build Robot2.fmu, Robot3.fmu and Fleet3.fmu.
+
+    For this machine, or for all.
+    """
     require(STEPPING)
     folder = folder_place("--out", out or Path(laglab_fmu.__file__).parent)
     with status() as tell:

@@ -6,13 +6,27 @@ from typing import Annotated, Any, NamedTuple
 
 import typer
 
-from laglab.scenario import assignment, load, read_timeline
+from laglab.scenario import assignment, load, read_timeline, shipped_names
 from laglab.scenario.keys import NO_UNIT, rows
+from laglab_control import ESTIMATORS
 
 ScenarioArgument = Annotated[
-    str, typer.Argument(metavar="SCENARIO", help="A shipped scenario's name, or a TOML file.")
+    str,
+    typer.Argument(
+        metavar="SCENARIO",
+        help="A shipped scenario's name, or a TOML file.",
+        autocompletion=shipped_names,
+    ),
 ]
-
+EstimatorsOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--estimator",
+        metavar="NAME",
+        help=f"The filter in the loop; further ones shadow it: {', '.join(ESTIMATORS)}.",
+        autocompletion=lambda: list(ESTIMATORS),
+    ),
+]
 
 POSE = "X,Y,THETA"
 
@@ -45,13 +59,14 @@ OWN: dict[str, Own] = {
 }
 """Dotted key of a scenario → its option, which says what the key says."""
 OF_SEVERAL_KEYS: dict[str, Any] = {
-    "estimator": Annotated[
-        list[str] | None,
-        typer.Option("--estimator", help="The filter in the loop; further ones shadow it."),
-    ],
+    "estimator": EstimatorsOption,
     "timeline": Annotated[
         str | None,
-        typer.Option("--timeline", help="What the link does when: TOML, or a run's link.csv."),
+        typer.Option(
+            "--timeline",
+            metavar="FILE",
+            help="What the link does when: TOML, or a run's link.csv.",
+        ),
     ],
     "set": Annotated[
         list[str] | None,

@@ -29,7 +29,7 @@ DialectOption = Annotated[
 def lint(
     file: Annotated[Path | None, typer.Argument(metavar="FILE", help="A dialect's XML.")] = None,
 ) -> None:
-    """Refuse what mavgen lets through; without FILE, look at laglab's own dialect."""
+    """Refuse what mavgen lets through, in FILE or in our dialect."""
     xml = file or dialect_path()
     findings = find_faults(xml)
     for finding in findings:
@@ -45,7 +45,10 @@ def generate(
     lang: Annotated[str, typer.Option(metavar="NAME", help=f"{', '.join(LANGUAGES)}.")] = "C",
     dialect: DialectOption = None,
 ) -> None:
-    """Generate code for firmware (C), programs (Python3), or a dissector for Wireshark (WLua)."""
+    """Generate code from the dialect.
+
+    For firmware (C), programs (Python3), or as a dissector for Wireshark (WLua).
+    """
     print(generate_into(lang, folder_place("DIR", directory), dialect))
 
 
@@ -70,7 +73,10 @@ def conform(
         typer.Option(help="Whether a robot waits for each command, or has a clock of its own."),
     ] = None,
 ) -> None:
-    """Test whether the robot, or the controller, at URL speaks the protocol; ends its run."""
+    """Test whether what answers at URL speaks the protocol.
+
+    The robot, or the controller, whose run it ends.
+    """
     if side == "controller" and pace:
         raise typer.BadParameter("a controller keeps no pace of its own: leave --pace out")
     if key:

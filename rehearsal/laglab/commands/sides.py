@@ -72,7 +72,7 @@ def gateway(
         bool, typer.Option("--disarmed", help="Stand still until a ground station arms the robot.")
     ] = False,
 ) -> None:
-    """Be the robot's side of SCENARIO: wait for a controller, run to the end."""
+    """Be the robot's side of SCENARIO, for a controller elsewhere."""
     if plant is None:
         require(STEPPING)
     with (
@@ -116,7 +116,7 @@ def controller(
     force: ForceOption = False,
     key: KeyOption = None,
 ) -> None:
-    """Be the remote station of SCENARIO: stabilise the robot at the other end."""
+    """Be the remote station of SCENARIO, for a robot elsewhere."""
     with open_endpoint(endpoint) as link, open_station(scenario, key) as (station, receiver):
         directory = place(scenario, out, force, suffix="-station")
         _say_whom_we_wait_for("the robot", link)

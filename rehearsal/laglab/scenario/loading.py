@@ -53,10 +53,11 @@ def _made(fields: dict[str, Any], overrides: Overrides, called: str) -> Scenario
 
 def shipped() -> dict[str, Scenario]:
     """The scenarios that come with the package, by name."""
-    return {name: load(name) for name in _shipped_names()}
+    return {name: load(name) for name in shipped_names()}
 
 
-def _shipped_names() -> list[str]:
+def shipped_names() -> list[str]:
+    """Of the scenarios that come with the package."""
     names = (Path(file.name) for file in SHIPPED.iterdir())
     return sorted(name.stem for name in names if name.suffix == ".toml")
 
@@ -68,7 +69,7 @@ def _read(reference: str) -> tuple[dict[str, Any], Path]:
     try:
         fields = tomllib.loads(path.read_text(encoding="utf-8"))
     except (FileNotFoundError, IsADirectoryError):
-        names = ", ".join(_shipped_names())
+        names = ", ".join(shipped_names())
         raise ScenarioError(
             f"{reference}: no such scenario; shipped: {names}; or give a path to a TOML file"
         ) from None

@@ -29,10 +29,12 @@ def consistency_table(scenario: Scenario, verdicts: Sequence[Verdict], seeds: in
         caption=f"of a consistent filter NEES and NIS average 3, here {low:.2f} to {high:.2f} "
         "(95 %); % of ticks within; claimed : true standard deviation",
         box=None,
+        pad_edge=False,
+        collapse_padding=True,
     )
     headings = ("filter", "NEES", "%", "NIS", "%", *AXES, "P not > 0", "diverged", "consistent")
     for heading in headings:
-        table.add_column(heading, no_wrap=True, justify="left" if heading == "filter" else "right")
+        table.add_column(heading, justify="left" if heading == "filter" else "right")
     for verdict in verdicts:
         table.add_row(verdict.estimator, *_cells(verdict))
     return table
@@ -44,9 +46,9 @@ def _cells(verdict: Verdict) -> list[str]:
         np.sqrt(mean_of_known(values[m:] ** 2)) for values in (verdict.claimed, verdict.true)
     )
     return [
-        f"{verdict.mean(verdict.nees):.2f}",
+        f"{verdict.mean(verdict.nees):.3g}",
         f"{verdict.inside(verdict.nees):.0%}",
-        f"{verdict.mean(verdict.nis):.2f}",
+        f"{verdict.mean(verdict.nis):.3g}",
         f"{verdict.inside(verdict.nis):.0%}",
         *(f"{ratio:.2f}" for ratio in claimed / true),
         f"{verdict.indefinite:.1%}",
