@@ -16,6 +16,7 @@ from laglab.extras import STEPPING, require
 from laglab.progress import status
 from laglab.results.whole import whole_file
 from laglab.results.writable import file_place
+from laglab_protocol import require_terminals
 
 RoundsOption = Annotated[int, typer.Option("--rounds", min=1, help="Turns of each contender.")]
 JsonOption = Annotated[
@@ -68,6 +69,8 @@ def loop(
     from laglab.bench import loop as loop_bench  # needs FMPy
 
     links = (link,) if link else loop_bench.LINKS
+    if "serial" in links:
+        require_terminals("--link serial")
     _run(loop_bench.bench(ticks, realtime, links), rounds, json)
 
 
