@@ -91,7 +91,7 @@ def read_summary(directory: Path) -> Summary:
             return msgspec.json.decode(data, type=Summary)
     except OSError as error:
         raise NoRunError(f"{path} cannot be read: {error.strerror}") from error
-    except msgspec.DecodeError as error:
+    except (msgspec.DecodeError, RecursionError) as error:
         raise NoRunError(f"{path} is not a run's summary: {error}") from error
     raise NoRunError(f"{path} has schema version {version}, this laglab reads {SCHEMA_VERSION}")
 
