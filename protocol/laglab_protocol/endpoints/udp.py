@@ -140,7 +140,7 @@ class UdpOut(_Udp):
 def _resolve(scheme: str, host: str, port: int) -> tuple[socket.AddressFamily, Any]:
     try:
         found = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)
-    except OSError as error:
+    except (OSError, UnicodeError) as error:  # no name at all, as far as encodings go
         raise NoSuchPortError(
             f"{scheme}://{host}:{port}: no such host {host!r}: give a name or address known here"
         ) from error

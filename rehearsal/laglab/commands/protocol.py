@@ -83,10 +83,15 @@ def conform(
         read_key(key)
     if junit:
         file_place("--junit", junit)
-    console = Console(stderr=True)
-    console.print(f"testing the {side} at {url}", highlight=False, soft_wrap=True)
+    heading = iter([f"testing the {side} at {url}"])
     with status() as tell:
-        report = test_conformance(url, side, key, pace=pace or "lockstep", progress=tell)
+
+        def progress(what: str) -> None:
+            for line in heading:  # once, when URL could be opened
+                Console(stderr=True).print(line, highlight=False, soft_wrap=True)
+            tell(what)
+
+        report = test_conformance(url, side, key, pace=pace or "lockstep", progress=progress)
     print(report.table())
     if junit:
         with whole_file(junit) as file:
