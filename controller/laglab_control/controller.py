@@ -9,14 +9,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from laglab_control.doubt import doubt
 from laglab_control.errors import ConfigError
 from laglab_control.estimators.family import EstimatorKind, estimator_kind
 from laglab_control.estimators.interface import Applied, Estimator, Measured, State
+from laglab_control.estimators.kalman import Belief, Innovation
 from laglab_control.flight import Echo, Flight, hear, send, take_off
 from laglab_control.guard import Alarm, Guard, Watched
 from laglab_control.laws.aicardi import STAND_STILL, Demand, Law, as_input
 from laglab_control.limits import Ticks, check, covariance, finite_pose
-from laglab_control.model import Vector
+from laglab_control.model import Matrix, Vector
 from laglab_control.motion import Way, joined
 from laglab_control.robot import RobotModel
 
@@ -71,6 +73,9 @@ class Control(NamedTuple):
     flight: Flight
     drive: Demand
     """The last command."""
+    P: Matrix | None = None
+    """What is claimed for the error of the estimate after the tick's correction: the estimator's
+    covariance, and what is not known of the inputs; None: nothing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,14 +116,14 @@ class Controller:
 
     def advance(self, control: Control) -> Control:
         """One tick later: the last command is on its way, the one n ticks older was applied."""
-        estimate, flight, drive = control
+        estimate, flight, drive, _ = control
         flight, applied = send(self.config.model, flight, as_input(drive))
         estimate = self._estimator.predict(estimate, self._applied(applied, drive))
         return Control(estimate, flight, drive)
 
     def expect(self, control: Control, s: int) -> Control:
         """The same, prepared for a measurement sampled at tick s, which is likely to come."""
-        estimate, flight, drive = control
+        estimate, flight, drive, _ = control
         return Control(self._estimator.expect(estimate, s), flight, drive)
 
     def answer(
@@ -132,21 +137,29 @@ class Controller:
 
         The robot is to stand still when there is no estimate to drive it by, or it has diverged.
         """
-        estimate, flight, drive = control
+        estimate, flight, drive, _ = control
         flight, inputs = hear(self.config.model, flight, echoes, recalled)
         if self._guard and isinstance(estimate, Watched):
             settled = flight.told.settled
             estimate = self._guard.correct(estimate, measurements, inputs, settled)
         else:
             estimate = self._estimator.correct(estimate, measurements, inputs)
-        return Control(estimate, flight, self._command(estimate, flight, drive))
+        P = self._claimed(estimate, flight)
+        return Control(estimate, flight, self._command(estimate, flight, drive, P), P)
 
-    def _command(self, estimate: State, flight: Flight, last: Demand) -> Demand:
+    def _command(self, estimate: State, flight: Flight, last: Demand, P: Matrix | None) -> Demand:
         if estimate.x is None or self.diverged(estimate.x):
             return STAND_STILL
         law = self.config.law
         demand = law.drive(self._at_arrival(estimate.x, flight, last), last.at_goal)
-        return demand if estimate.P is None else law.slowed(demand, estimate.P)
+        return demand if P is None else law.slowed(demand, P)
+
+    def _claimed(self, estimate: State, flight: Flight) -> Matrix | None:
+        x, P = estimate.x, estimate.P
+        if x is None or P is None:
+            return None
+        unknown = doubt(flight, self.config.model, x)
+        return P if unknown is None else P + unknown
 
     def diverged(self, x: Vector) -> bool:
         """Whether a pose estimate is not finite, or FAR from where it began and from the goal."""
@@ -156,6 +169,21 @@ class Controller:
     def warning(self, control: Control) -> str | None:
         """The estimator's."""
         return self._estimator.warning(control.estimate)
+
+    def innovation(self, control: Control) -> Innovation | None:
+        """Of the newest measurement that came at this tick, as the estimator saw it."""
+        return self._estimator.innovation(control.estimate)
+
+    def at_arrival(self, control: Control) -> Belief | None:
+        """x̂_{k+n}, by which the command was made, and the covariance that the model claims for it;
+        None where there is no estimate."""
+        x, P, flight = control.estimate.x, control.P, control.flight
+        if x is None or P is None:
+            return None
+        pose = self._at_arrival(x, flight, control.drive)
+        for u in flight.in_flight if self.kind.predicts else ():
+            x, P = self.config.model.predict(x, P, u)
+        return Belief(np.array(pose), P)
 
     def alarm(self, control: Control) -> Alarm | None:
         """What the guard has found at this tick."""

@@ -1,5 +1,6 @@
 """The commands in flight: which was sent when, and which is in force when."""
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -47,12 +48,27 @@ class Told(NamedTuple):
     """Up to this tick it may be known what was in force; after it, it is believed."""
     missing: tuple[int, ...] = ()
     """The ticks up to there of which it is not, in order."""
+    in_force: Vector = STAND
+    """The input at `known`."""
+    before: Vector = STAND
+    """The last input known before the first that is missing."""
+    usual: int | None = None
+    """So many inputs were only believed when the last echo came; None before one."""
+    spread: float = 0.0
+    """The standard deviation of the `recent` delays [ticks]."""
 
     @property
     def settled(self) -> int:
         """Up to this tick what was in force is known, but for a few ticks, or given up."""
         missing = [tick for tick in self.missing if tick > self.known - GIVEN_UP]
         return missing[0] - 1 if len(missing) > FEW else self.known
+
+
+class Sums(NamedTuple):
+    """Of all inputs sent so far."""
+
+    v: float
+    omega: float
 
 
 class Flight(NamedTuple):
@@ -64,6 +80,8 @@ class Flight(NamedTuple):
     command_delay: int
     """n as the echoes have it: their median, or what the station was told before the first."""
     told: Told
+    sums: Log[Sums]
+    """Of v and omega over `sent`, up to each."""
     in_flight: SlidingProduct[Vector, Way]
     """u_{tick-n} ... u_{tick-1}: standing still for what was sent before tick 0."""
     ahead: Way
@@ -73,15 +91,16 @@ class Flight(NamedTuple):
 def take_off(robot: RobotModel, command_delay: int) -> Flight:
     """Before the first command."""
     nothing: SlidingProduct[Vector, Way] = SlidingProduct(joined, NOWHERE)
-    return _rebuilt(robot, Flight(0, logged(), command_delay, Told(), nothing, NOWHERE))
+    flight = Flight(0, logged(), command_delay, Told(), logged(), nothing, NOWHERE)
+    return _rebuilt(robot, flight)
 
 
 def send(robot: RobotModel, flight: Flight, u: Vector) -> tuple[Flight, Vector]:
     """With the command of this tick on its way; and the one that is in force until the next."""
-    tick, sent, n, told, in_flight, _ = flight
-    sent = append(sent, u, MEMORY)
+    tick, sent, n, told, sums, in_flight, _ = flight
+    sent, sums = append(sent, u, MEMORY), append(sums, _added(sums, u), MEMORY)
     applied, in_flight = in_flight.push(u, robot.way(u)).pop()
-    return Flight(tick + 1, sent, n, told, in_flight, in_flight.product), applied
+    return Flight(tick + 1, sent, n, told, sums, in_flight, in_flight.product), applied
 
 
 def hear(
@@ -97,29 +116,39 @@ def hear(
     """
     if not (echoes or recalled):
         return flight, []
-    tick, sent, n, told, in_flight, ahead = flight
+    tick, sent, n, told, sums, in_flight, ahead = flight
     inputs = [Applied(echo.tick, echo.u) for echo in echoes] + list(recalled)
     for echo in echoes:
-        told = _heard(told, echo)
+        told = _heard(told, echo, tick)
     if told.missing:
         told = _found(told, inputs, tick)
     seen = sorted(told.recent)[len(told.recent) // 2] if told.recent else n
-    flight = Flight(tick, sent, seen, told, in_flight, ahead)
+    flight = Flight(tick, sent, seen, told, sums, in_flight, ahead)
     if seen == n:
         return flight, inputs
     flight = _rebuilt(robot, flight)
     return flight, inputs + _believed(flight, since=told.known + 1)
 
 
-def _heard(told: Told, echo: Echo) -> Told:
+def _heard(told: Told, echo: Echo, tick: int) -> Told:
     """With one more echo. A command that is held, for want of a newer one, tells nothing of n."""
-    recent, newest, known, missing = told
+    recent, newest, known, missing, in_force, before, usual, spread = told
     made = echo.command_tick
     if made is not None and made > newest and 0 <= echo.tick - made < MEMORY:
         recent, newest = (*recent, echo.tick - made)[-RECENT:], made
+        spread = _deviation(recent) if spread or recent[-1] != recent[0] else 0.0
+    if echo.tick <= known:
+        return Told(recent, newest, known, missing, in_force, before, usual, spread)
     if echo.tick > known + 1:
+        before = before if missing else in_force
         missing += tuple(range(max(known + 1, echo.tick - MEMORY), echo.tick))
-    return Told(recent, newest, max(known, echo.tick), missing)
+    usual = tick - 1 - echo.tick
+    return Told(recent, newest, echo.tick, missing, echo.u, before, usual, spread)
+
+
+def _deviation(delays: tuple[int, ...]) -> float:
+    mean = sum(delays) / len(delays)
+    return math.sqrt(sum((each - mean) ** 2 for each in delays) / len(delays))
 
 
 def _found(told: Told, inputs: Sequence[Applied], tick: int) -> Told:
@@ -142,6 +171,31 @@ def _believed(flight: Flight, since: int) -> list[Applied]:
     """What was in force from tick `since` to the present, if each command took n ticks."""
     u = _sent_since(flight, since - flight.command_delay)
     return [Applied(tick, u[tick - since]) for tick in range(since, flight.tick)]
+
+
+def _added(sums: Log[Sums], u: Vector) -> Sums:
+    v, omega = u.tolist()
+    if not sums.length:
+        return Sums(v, omega)
+    before = sums.newest
+    return Sums(before.v + v, before.omega + omega)
+
+
+def believed_at(flight: Flight, tick: int) -> Vector:
+    """What is believed to have been in force on [t_tick, t_{tick+1}), tick < `flight.tick`."""
+    items, length = flight.sent
+    index = length - (flight.tick - (tick - flight.command_delay))
+    return items[index] if 0 <= index < length else STAND
+
+
+def believed_sum(flight: Flight, since: int) -> Sums:
+    """Of the inputs believed to have been in force from tick `since` to the present."""
+    items, length = flight.sums
+    last = length - 1 - flight.command_delay
+    first = last - (flight.tick - since)
+    newest = items[last] if last >= 0 else Sums(0.0, 0.0)
+    oldest = items[first] if first >= 0 else Sums(0.0, 0.0)
+    return Sums(newest.v - oldest.v, newest.omega - oldest.omega)
 
 
 def _sent_since(flight: Flight, tick: int) -> list[Vector]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from math import isfinite
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,6 +10,13 @@ import laglab_protocol as protocol
 from laglab_control.estimators.interface import Applied, Measured
 from laglab_control.flight import Echo
 from laglab_protocol import Measurement
+
+
+class Came(NamedTuple):
+    """What a tick of the robot brought."""
+
+    measurements: tuple[Measurement, ...]
+    recalled: tuple[protocol.Applied, ...]
 
 
 def measured(messages: Sequence[Measurement], first: int, tick: int) -> list[Measured]:

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from laglab_control.flight import Told
+from laglab_protocol import Message, Recall
 
 PATIENCE = 5
 """Ticks that a measurement may be late behind later ones, before what it tells is asked for."""
@@ -36,3 +37,17 @@ def question(asked: Asked, told: Told, tick: int) -> tuple[Asked, Question | Non
         return asked, None
     asked = Asked(max(asked.through, missing[-1]), again)
     return asked, Question(missing[0], missing[-1] - missing[0] + 1)
+
+
+class Questions:
+    """To one robot, one after the other."""
+
+    def __init__(self) -> None:
+        self._asked = Asked()
+
+    def ask(self, told: Told, first: int, tick: int, robot: tuple[int, int]) -> list[Message]:
+        """What to say at `tick`; the controller counts its ticks from `first` on."""
+        if not told.missing:
+            return []
+        self._asked, asks = question(self._asked, told, tick - first)
+        return [Recall(first + asks.first, asks.ticks, *robot)] if asks else []

@@ -3,11 +3,10 @@
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
-from laglab_control import Control, Controller, State, StationConfig, is_far
+from laglab_control import Control, Controller, StationConfig, is_far
 from laglab_control.flight import MEMORY
 from laglab_protocol import (
     STATION_COMPONENT,
@@ -19,11 +18,9 @@ from laglab_protocol import (
     Durations,
     End,
     EndReason,
-    Estimate,
     Frame,
     Measurement,
     Message,
-    Recall,
     Restart,
     Sender,
     Settings,
@@ -31,20 +28,14 @@ from laglab_protocol import (
     Timesync,
 )
 from laglab_station.alarms import Alarms
-from laglab_station.hearing import echoes, measured, recalled
+from laglab_station.hearing import Came, echoes, measured, recalled
 from laglab_station.joining import Rest, observe, prior
-from laglab_station.recalling import Asked, question
+from laglab_station.recalling import Questions
 from laglab_station.report import StationReport
+from laglab_station.saying import said
 
 LONGEST_GAP = MEMORY
 """Ticks without a word, after which nobody knows what the robot did meanwhile."""
-
-
-class Came(NamedTuple):
-    """What a tick of the robot brought."""
-
-    measurements: tuple[Measurement, ...]
-    recalled: tuple[Applied, ...]
 
 
 class Station:
@@ -81,7 +72,7 @@ class Station:
         self._robot: tuple[int, int] | None = None
         self._measurements: deque[Measurement] = deque(maxlen=UNANNOUNCED)
         self._recalled: deque[Applied] = deque(maxlen=UNANNOUNCED)
-        self._asked = Asked()
+        self._questions = Questions()
         self._restart = Restart()
         self._first = 0
         self._control = self._controller.start()
@@ -93,6 +84,8 @@ class Station:
         self._closed = False
         self._measurement_delay: int | None = None
         self._times = Durations()
+        self._took: int | None = None
+        """The last answer [ns], until there is time to count it."""
         self._alarms = Alarms()
         self._warnings: dict[str, str] = {}
         """By what they are about: of each the first."""
@@ -117,7 +110,7 @@ class Station:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What the station has to warn of, in the order in which it was found."""
-        self._judge()
+        self._look_back()
         return tuple(self._warnings.values())
 
     def warn(self, about: str, text: str) -> None:
@@ -126,6 +119,7 @@ class Station:
 
     def report(self) -> StationReport:
         """How the run went so far."""
+        self._look_back()
         p50, p99, longest = self._times.quantiles() or (None, None, None)
         return StationReport(
             n_seen=self._control.flight.command_delay,
@@ -153,7 +147,7 @@ class Station:
     def look_ahead(self) -> None:
         """Do now, while the robot is busy with the answer, what the next one would wait for."""
         regular = self._unjudged  # a measurement came, so at the next tick one may too
-        self._judge()
+        self._look_back()
         under_way = self._tick is not None and self._joining is None and self._outcome is None
         if under_way and self._ahead is None:
             self._ahead = self._controller.advance(self._control)
@@ -194,10 +188,8 @@ class Station:
                 self.warn("displaced", "another station has the robot: calling until it lets go")
             return []
         answered, self._closed = self._outcome is not None, True
-        if answered:
-            return []
-        self._outcome = end
-        return [end]
+        self._outcome = self._outcome or end
+        return [] if answered else [end]
 
     def _hear_tick(self, message: Tick) -> list[Message]:
         came = Came(tuple(self._measurements), tuple(self._recalled))
@@ -222,9 +214,9 @@ class Station:
 
     def _meet(self, tick: int) -> None:
         """A robot that is new to us at this tick."""
-        self._judge()
+        self._look_back()
         self._first, self._tick = tick, None
-        self._asked = Asked()
+        self._questions = Questions()
         self._alarms.handed_over(self._controller, self._control)
         self._control, self._ahead = self._controller.start(), None
         self._joining = Rest() if tick > 0 and self._controller.kind.predicts else None
@@ -234,7 +226,7 @@ class Station:
         with np.errstate(over="ignore", invalid="ignore"):  # what follows is seen as diverged
             self._advance(tick, came)
         if self._clock:
-            self._times.add(self._clock() - started)
+            self._took = self._clock() - started
 
     def _advance(self, tick: int, came: Came) -> None:
         if self._joining is None:
@@ -256,8 +248,7 @@ class Station:
         x, P = prior(rest, self._config.model)
         if is_far(x.tolist(), self._config.law.goal):
             self._stand_still(tick)
-            self._outcome = End(tick, EndReason.DIVERGED)
-            self._answer.insert(0, self._outcome)  # the command closes the answer
+            self._end_diverged(tick)
             return
         config = replace(self._config, initial_estimate=x, initial_covariance=P)
         self._alarms.handed_over(self._controller, self._control)
@@ -266,6 +257,10 @@ class Station:
         self._first = self._tick = rest.tick
         self._joining = None
         self._step(tick, Came((), ()))
+
+    def _end_diverged(self, tick: int) -> None:
+        self._outcome = End(tick, EndReason.DIVERGED)
+        self._answer.insert(-1, self._outcome)  # the command closes the answer
 
     @property
     def _peer(self) -> tuple[int, int]:
@@ -278,7 +273,7 @@ class Station:
     def _step(self, tick: int, came: Came) -> None:
         """On to `tick`; over ticks that were lost on the way the last command is taken to hold,
         until the robot tells."""
-        self._judge()
+        self._look_back()
         control = self._control
         for _ in range(0 if self._tick is None else tick - self._tick):
             control = self._ahead or self._controller.advance(control)
@@ -287,44 +282,23 @@ class Station:
         arrived = measured(came.measurements, first, tick)
         if arrived:
             self._measurement_delay = tick - first - arrived[-1].tick
-        told = echoes(came.measurements, first, tick)
-        known = recalled(came.recalled, first, tick) if came.recalled else ()
+        told, known = echoes(came.measurements, first, tick), recalled(came.recalled, first, tick)
         self._control = self._controller.answer(control, arrived, told, known)
         self._tick = tick
-        asks = self._ask(tick - first) if arrived else []
-        said = self._alarms.note(self._controller, self._control, tick)
-        self._answer = said + self._messages(tick, self._control, asks)
+        asks = self._questions.ask(self._control.flight.told, first, tick, self._peer)
+        alarms = self._alarms.note(self._controller, self._control, tick)
+        self._answer = [*alarms, *said(tick, self._control, self._peer, asks)]
         self._unjudged = bool(arrived)
+        x = self._control.estimate.x
+        if x is not None and self._controller.diverged(x):
+            self._end_diverged(tick)
 
-    def _judge(self) -> None:
-        if not self._unjudged:
-            return
-        self._unjudged = False
-        if said := self._controller.warning(self._control):
-            self.warn("estimator", f"tick {self._tick}: {said}")
-
-    def _ask(self, tick: int) -> list[Message]:
-        """For what was in force at ticks of which nothing was heard, if it is time to ask."""
-        flight = self._control.flight
-        if not flight.told.missing:
-            return []
-        self._asked, asks = question(self._asked, flight.told, tick)
-        return [Recall(self._first + asks.first, asks.ticks, *self._peer)] if asks else []
-
-    def _messages(self, tick: int, control: Control, asks: list[Message]) -> list[Message]:
-        estimates = [*asks, *_estimate(tick, control.estimate)]
-        v, omega, _ = control.drive
-        command = Command(v, omega, tick, *self._peer, estimates=len(estimates))
-        if control.estimate.x is not None and self._controller.diverged(control.estimate.x):
-            self._outcome = End(tick, EndReason.DIVERGED)
-            return [*estimates, self._outcome, command]  # the command closes the answer
-        return [*estimates, command]
-
-
-def _estimate(tick: int, state: State) -> list[Estimate]:
-    """The report of the estimate; none when the estimator claims no covariance."""
-    if state.x is None or state.P is None:
-        return []
-    (xx, xy, xt), (_, yy, yt), (_, _, tt) = state.P.tolist()
-    x, y, theta = state.x.tolist()
-    return [Estimate(x, y, theta, xx, xy, xt, yy, yt, tt, tick)]
+    def _look_back(self) -> None:
+        """Make up for what the last answer did not wait for."""
+        if self._took is not None:
+            self._times.add(self._took)
+            self._took = None
+        if self._unjudged:
+            self._unjudged = False
+            if problem := self._controller.warning(self._control):
+                self.warn("estimator", f"tick {self._tick}: {problem}")

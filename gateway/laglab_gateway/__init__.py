@@ -1,5 +1,6 @@
 """The robot's side of the link: a plant behind two delayed channels, paced by station or clock."""
 
+from laglab_gateway.config import GatewayConfig
 from laglab_gateway.core import Gateway
 from laglab_gateway.drive import Safety
 from laglab_gateway.errors import (
@@ -20,6 +21,7 @@ from laglab_gateway.loops.realtime import serve_realtime
 from laglab_gateway.loops.remote import serve_remote
 from laglab_gateway.loops.surroundings import Patience, Served, Surroundings
 from laglab_gateway.loops.watch import Watch, Watcher
+from laglab_gateway.outcome import Outcome
 from laglab_gateway.plant import Plant, Reading
 from laglab_gateway.record.audit import ClockReport, DelayReport, DirectionReport, LinkReport
 from laglab_gateway.record.files import (
@@ -47,7 +49,7 @@ from laglab_gateway.services import (
     Timesyncing,
     standard_parameters,
 )
-from laglab_gateway.side import GatewayConfig, Outcome, RobotSide
+from laglab_gateway.side import RobotSide
 
 __all__ = [
     "IDEAL",

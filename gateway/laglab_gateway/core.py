@@ -9,13 +9,14 @@ n = 0 it waits for the answer to this tick, so that n = 0 means no delay.
 
 from collections.abc import Mapping
 
+from laglab_gateway.config import GatewayConfig
 from laglab_gateway.drive import speeds, supervise
 from laglab_gateway.link.fates import Fates
 from laglab_gateway.link.timeline import Direction
 from laglab_gateway.plant import Plant
 from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import RobotState, Services, standard_parameters
-from laglab_gateway.side import GatewayConfig, RobotSide
+from laglab_gateway.side import RobotSide
 from laglab_protocol import Measurement, Recall, Sender
 
 
@@ -73,10 +74,10 @@ class Gateway(RobotSide):
         k, Ts, safety = self.tick, self._config.sample_time, self.safety
         for message, _ in self._commands.due(k):
             if isinstance(message, Recall):
-                self._owe(message)
+                self._owed.owe(self._memory.answers(message))
             else:
                 self.audit.command.arrived(message.tick, k)
-                self._follow(message, k)
+                self._follow(message, k, safety)
         supervised = supervise(self._drive, k, Ts, safety)
         if supervised.mode is not self._drive.mode:
             self.audit.stopped(k)

@@ -1,12 +1,18 @@
 """The speeds that were in force at the last ticks, for a station that missed what told of them."""
 
 import math
-from collections.abc import Iterator
+from collections import OrderedDict
+from collections.abc import Iterable, Iterator
+from itertools import islice
 
 from laglab_protocol import RECALLED, Applied, Recall
 
 KEPT = 1024
 """Ticks; a station that heard nothing for longer meets the robot anew."""
+
+APPLIED_A_TICK = 5
+"""So many LAGLAB_APPLIED go with a tick's measurements: a datagram stays in one piece."""
+MOST_OWED = KEPT // RECALLED + 1
 
 UNKNOWN = (math.nan, math.nan)
 Speeds = tuple[float, float]
@@ -17,13 +23,13 @@ class SpeedMemory:
     """By tick, as they come; the oldest are forgotten."""
 
     def __init__(self) -> None:
-        self._speeds: dict[int, Speeds] = {}
+        self._speeds = OrderedDict[int, Speeds]()
 
     def keep(self, tick: int, speeds: Speeds) -> None:
         """In force on [t_tick, t_{tick+1})."""
         self._speeds[tick] = speeds
         if len(self._speeds) > KEPT:
-            del self._speeds[next(iter(self._speeds))]
+            self._speeds.popitem(last=False)
 
     def learn(self, told: Applied) -> None:
         """What a robot of its own memory says."""
@@ -50,3 +56,25 @@ class SpeedMemory:
     def forget(self) -> None:
         """The ticks begin again."""
         self._speeds.clear()
+
+
+class Owed:
+    """What the station asked to be told, and will be in the next ticks' datagrams."""
+
+    def __init__(self) -> None:
+        self._answers: dict[int, Applied] = {}
+        """By first tick, in the order in which they will be told."""
+
+    def owe(self, answers: Iterable[Applied]) -> None:
+        """Some more; asked for again they are told again, but not twice meanwhile."""
+        for answer in answers:
+            if len(self._answers) < MOST_OWED:
+                self._answers.setdefault(answer.first, answer)
+
+    def take(self) -> list[Applied]:
+        """What goes with this tick."""
+        return [self._answers.pop(first) for first in list(islice(self._answers, APPLIED_A_TICK))]
+
+    def forget(self) -> None:
+        """Nobody waits for it any more."""
+        self._answers.clear()

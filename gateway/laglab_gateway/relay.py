@@ -12,12 +12,14 @@ from typing import NamedTuple
 
 from msgspec.structs import replace
 
+from laglab_gateway.config import GatewayConfig
 from laglab_gateway.drive import Drive
 from laglab_gateway.link.fates import Fates
 from laglab_gateway.link.timeline import Direction
+from laglab_gateway.outcome import Outcome, reason_of
 from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import RobotState, Services
-from laglab_gateway.side import GatewayConfig, Outcome, RobotSide, reason_of
+from laglab_gateway.side import RobotSide
 from laglab_protocol import (
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
@@ -146,7 +148,7 @@ class Relay(RobotSide):
         self._commands.clear()
         self._measurements.clear()
         self._memory.forget()
-        self._owed.clear()
+        self._owed.forget()
         self._drive = Drive()
 
     def _audit(self, sample: Measurement) -> None:
@@ -162,14 +164,14 @@ class Relay(RobotSide):
         for message, _ in self._commands.due(self.elapsed + 1):
             if isinstance(message, Recall):
                 frames += self._remember(message)
-            elif self._follow(message, self.tick + 1):
+            elif self._follow(message, self.tick + 1, self.safety):
                 frames.append(self._to_robot.frame(self._allowed(message)))
         return frames
 
     def _remember(self, asked: Recall) -> list[bytes]:
         """Tell what the robot's measurements have told; the robot is asked for what they have not,
         and the station will ask again."""
-        self._owe(asked)
+        self._owed.owe(self._memory.answers(asked))
         return [self._to_robot.frame(asked)] if self._memory.lacks(asked) else []
 
     def _allowed(self, command: Command) -> Command:

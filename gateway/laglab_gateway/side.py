@@ -5,26 +5,23 @@ What moves comes in two kinds: a plant that is stepped (`core`), and a robot wit
 own (`relay`).
 """
 
-import math
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import islice
-from typing import NamedTuple
 
+from laglab_gateway.config import GatewayConfig
 from laglab_gateway.drive import Drive, Safety, follow, rejection
 from laglab_gateway.link.channel import Channel
 from laglab_gateway.link.fates import FateKind, Fates
 from laglab_gateway.link.log import LinkRow
 from laglab_gateway.link.timeline import Direction
-from laglab_gateway.memory import KEPT, SpeedMemory
+from laglab_gateway.memory import Owed, SpeedMemory
+from laglab_gateway.outcome import Outcome, reason_of
 from laglab_gateway.record.audit import Audit, DirectionAudit
 from laglab_gateway.record.trace import TraceRow
-from laglab_gateway.services import RobotState, Services
-from laglab_gateway.values import Positive, Ticks, checked
+from laglab_gateway.services import RobotState, Services, safety_now
 from laglab_protocol import (
     MAV_SEVERITY_WARNING,
-    RECALLED,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
     STATION_COMPONENT,
@@ -47,44 +44,6 @@ from laglab_protocol import (
 )
 
 
-@checked
-class GatewayConfig:
-    """Delays n and m [ticks], the tick that ends the run (None: none does), Ts [s], the failsafe;
-    the robot's geometry [m], for the station to compare, where it is known.
-
-    Raises ConfigError, naming the field, when one cannot be.
-    """
-
-    command_delay: Ticks
-    measurement_delay: Ticks
-    last_tick: Ticks | None
-    sample_time: Positive
-    safety: Safety = Safety()
-    wheel_radius: Positive | None = None
-    track: Positive | None = None
-
-    @property
-    def settings(self) -> Settings:
-        """What the station is told of all this."""
-        v_limit, omega_limit = self.safety.v_limit, self.safety.omega_limit
-        return Settings(
-            sample_time=self.sample_time,
-            wheel_radius=self.wheel_radius or math.nan,
-            track=self.track or math.nan,
-            v_max=math.inf if v_limit is None else v_limit,
-            omega_max=math.inf if omega_limit is None else omega_limit,
-            command_delay=self.command_delay,
-            measurement_delay=self.measurement_delay,
-        )
-
-
-class Outcome(NamedTuple):
-    """How a run ended, and at which tick."""
-
-    reason: EndReason
-    tick: int
-
-
 def from_station(frame: Frame) -> bool:
     """Whether the remote station sent it: nobody else may command."""
     return (frame.system, frame.component) == (STATION_SYSTEM, STATION_COMPONENT)
@@ -95,14 +54,6 @@ def _is_meant(command: Command | Recall) -> bool:
     return target == (ROBOT_SYSTEM, ROBOT_COMPONENT)
 
 
-def reason_of(end: End) -> EndReason:
-    """Why a peer ended the run; a reason we do not know counts as a failure."""
-    return EndReason(end.reason) if end.reason in set(EndReason) else EndReason.FAILED
-
-
-APPLIED_A_TICK = 5
-"""So many LAGLAB_APPLIED go with a tick's measurements: a datagram stays in one piece."""
-MOST_OWED = KEPT // RECALLED + 1
 Cell = float | None
 
 
@@ -135,9 +86,10 @@ class RobotSide(ABC):
         self._measurements: Channel[Measurement | Applied] = Channel(
             "measurement", m, Ts, fates.get("measurement")
         )
+        self._estimates: deque[Estimate] = deque(maxlen=UNANNOUNCED)
+        self._recalls: deque[Recall] = deque(maxlen=UNANNOUNCED)
         self._memory = SpeedMemory()
-        self._owed: dict[int, Applied] = {}
-        """What the station asked to be told, by first tick, in the order in which it will be."""
+        self._owed = Owed()
         self._answered_through = -1
         self._drive = Drive()
         self._go_to(0)
@@ -146,8 +98,8 @@ class RobotSide(ABC):
         """Nothing was said yet at this tick."""
         self.tick = tick
         self._batch: list[Message] = []
-        self._estimates: deque[Estimate] = deque(maxlen=UNANNOUNCED)
-        self._recalls: deque[Recall] = deque(maxlen=UNANNOUNCED)
+        self._estimates.clear()
+        self._recalls.clear()
         self._command: Command | None = None
 
     @property
@@ -179,8 +131,8 @@ class RobotSide(ABC):
         that has come across, and the tick."""
         for sample in samples:
             self._measurements.push(self.elapsed, sample)
-        for first in list(islice(self._owed, APPLIED_A_TICK)):
-            self._measurements.push(self.elapsed, self._owed.pop(first))
+        for told in self._owed.take():
+            self._measurements.push(self.elapsed, told)
         due = [crossing.message for crossing in self._measurements.due(self.elapsed)]
         for message in due:
             if isinstance(message, Measurement):
@@ -250,15 +202,9 @@ class RobotSide(ABC):
         self._answered_through = command.tick
         self._commands.push(self.elapsed, command)
 
-    def _owe(self, asked: Recall) -> None:
-        """Answer a question, in the next ticks' datagrams; asked again it is answered again."""
-        for answer in self._memory.answers(asked):
-            if len(self._owed) < MOST_OWED:
-                self._owed.setdefault(answer.first, answer)
-
-    def _follow(self, command: Command, tick: int) -> bool:
+    def _follow(self, command: Command, tick: int, safety: Safety) -> bool:
         """Follow from `tick` on a command that came across; False, and counted, when rejected."""
-        if rejected := rejection(self._drive, command, self.safety):
+        if rejected := rejection(self._drive, command, safety):
             self.audit.refused[rejected] += 1
             return False
         self._drive = follow(command, tick)
@@ -267,9 +213,7 @@ class RobotSide(ABC):
     @property
     def safety(self) -> Safety:
         """The limits and times now: ground stations may set some of them."""
-        now = self.services.parameters
-        limits = (now["V_MAX"] or None, now["OMEGA_MAX"] or None)
-        return Safety(*limits, now["LINK_TIMEOUT"], self._config.safety.ramp)
+        return safety_now(self.services.parameters, self._config.safety.ramp)
 
     def _armed(self, v: float, omega: float) -> tuple[float, float]:
         """These speeds, or standstill while the robot is disarmed."""
@@ -295,10 +239,10 @@ class RobotSide(ABC):
 
     def take_link_rows(self) -> list[LinkRow]:
         """What the link did to the frames that entered it since the last call."""
-        measurements, commands = self._measurements.take_log(), self._commands.take_log()
-        self.audit.measurement.fates.update(FateKind(row.fate) for row in measurements)
-        self.audit.command.fates.update(FateKind(row.fate) for row in commands)
-        return [*measurements, *commands]
+        rows = self._measurements.take_log() + self._commands.take_log()
+        for row in rows:
+            self.audit.of(row.direction).fates[FateKind(row.fate)] += 1
+        return rows
 
     @abstractmethod
     def close_tick(self) -> TraceRow:

@@ -21,6 +21,7 @@ from laglab.commands import (
     scenarios,
     serial,
     sides,
+    trust,
 )
 from laglab.commands.group import alone, group
 from laglab.errors import LaglabError, RunError, ScenarioError
@@ -59,6 +60,7 @@ app.command("estimators")(estimators.estimators)
 app.command("scenario")(scenario.scenario)
 app.command("compare")(compare.compare)
 app.command("consistency")(consistency.consistency)
+app.command("trust")(trust.trust)
 app.command("errata")(errata.errata)
 app.command("gateway")(sides.gateway)
 app.command("controller")(sides.controller)

@@ -113,6 +113,7 @@ def recorded(seed: int, noise: float = 1.0) -> Record:
         "duration": TICKS / 100,
         "seed": seed,
         "link.measurement": RADIO,
+        "law.caution": 1.0,
         "estimator.initial_covariance": 1e-3 * noise**2,
         "plant.wheel_noise_variance": 1.0 * noise**2,
         "plant.measurement_variance": tuple(noise**2 * np.array([0.01, 0.004, 0.018])),

@@ -22,6 +22,7 @@ INTO_A_FOLDER = {
 PICTURES = {
     "compare": ("compare", "run", "--out"),
     "consistency": ("consistency", "--out"),
+    "trust": ("trust", "--out"),
 }
 INTO_A_FILE = {
     "conform": ("conform", "udpin://127.0.0.1:0", "--side", "robot", "--junit"),

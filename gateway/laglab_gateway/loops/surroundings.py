@@ -6,10 +6,10 @@ from time import monotonic
 from typing import NamedTuple
 
 from laglab_gateway.loops.watch import Watch
+from laglab_gateway.outcome import Outcome
 from laglab_gateway.record.audit import LinkReport
 from laglab_gateway.record.lateness import TimingReport
 from laglab_gateway.record.recorder import Recorder
-from laglab_gateway.side import Outcome
 from laglab_protocol import Listener
 
 

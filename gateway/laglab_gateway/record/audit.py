@@ -105,6 +105,10 @@ class Audit:
         if len(self.first_stops) < STOPS_KEPT:
             self.first_stops.append(tick)
 
+    def of(self, direction: str) -> DirectionAudit:
+        """One of the two."""
+        return self.command if direction == "command" else self.measurement
+
     def report(self, clocks: ClockReport | None = None) -> LinkReport:
         """As it is now."""
         return LinkReport(

@@ -58,7 +58,7 @@ def read_trace(path: Path) -> Trace:
     return {name: np.concatenate([piece[name] for piece in pieces]) for name in TraceRow._fields}
 
 
-def trace_pieces(path: Path, rows: int = 20_000) -> Iterator[Trace]:
+def trace_pieces(path: Path, rows: int = 5_000) -> Iterator[Trace]:
     """A trace of any length, so many rows at a time; a last row that was cut short is left out.
 
     Raises: TraceError, as `read_trace`.

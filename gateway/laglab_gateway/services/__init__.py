@@ -1,7 +1,12 @@
 """What a ground station expects of a rover: heartbeat, parameters, commands, telemetry."""
 
 from laglab_gateway.services.commands import Commands
-from laglab_gateway.services.parameters import Parameter, Parameters, standard_parameters
+from laglab_gateway.services.parameters import (
+    Parameter,
+    Parameters,
+    safety_now,
+    standard_parameters,
+)
 from laglab_gateway.services.service import Services
 from laglab_gateway.services.state import Arming, RobotState
 from laglab_gateway.services.telemetry import heartbeat
@@ -16,5 +21,6 @@ __all__ = [
     "Services",
     "Timesyncing",
     "heartbeat",
+    "safety_now",
     "standard_parameters",
 ]

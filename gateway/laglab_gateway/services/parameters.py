@@ -7,6 +7,7 @@ import math
 import struct
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 from laglab_gateway.drive import Safety
 from laglab_protocol import (
@@ -118,6 +119,20 @@ def standard_parameters(
             *others,
         ]
     )
+
+
+def safety_now(parameters: Parameters, ramp: float) -> Safety:
+    """The limits and times that stand there now; the ramp [s] is no parameter."""
+    v_limit, omega_limit = parameters["V_MAX"], parameters["OMEGA_MAX"]
+    return _safety(v_limit or None, omega_limit or None, parameters["LINK_TIMEOUT"], ramp)
+
+
+@lru_cache
+def _safety(
+    v_limit: float | None, omega_limit: float | None, timeout: float, ramp: float
+) -> Safety:
+    """Checked once: it is asked for at every tick, and changes when somebody sets a parameter."""
+    return Safety(v_limit, omega_limit, timeout, ramp)
 
 
 def _to_float32(value: float) -> float:

@@ -128,7 +128,8 @@ class Run:
         """Read so that what is not drawn is never in memory together."""
         stride = -(-self.summary.ticks // MOST_DRAWN)
         pieces = [
-            {name: column[::stride] for name, column in each.items()} for each in self.pieces()
+            {name: column[::stride].copy() for name, column in each.items()}  # no view of it all
+            for each in self.pieces()
         ]
         whole = {name: np.concatenate([each[name] for each in pieces]) for name in pieces[0]}
         for name in self.scenario.estimator.compare:

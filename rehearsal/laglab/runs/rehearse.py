@@ -14,6 +14,7 @@ from laglab.runs.clock import LoopClock
 from laglab.runs.ending import Ending
 from laglab.runs.errors import LINK_LOST, SIDE_ERRORS
 from laglab.runs.inline import InlineLink
+from laglab.runs.pauses import short_pauses
 from laglab.runs.reports import (
     Answered,
     Ended,
@@ -64,7 +65,8 @@ def rehearse_inline(
             link = InlineLink(station, codec.receiver)
             listener = Listener(link, robot.codec.receiver)
             around = Surroundings(listener, recorder, progress=clock, warn=warnings.append)
-            served = robot.serve(around)
+            with short_pauses():
+                served = robot.serve(around)
     except SIDE_ERRORS as error:
         begun = clock.seconds > 0 or isinstance(error, LINK_LOST)
         return Ending(problem=str(error), begun=begun, loop_seconds=clock.seconds)

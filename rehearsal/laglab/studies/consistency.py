@@ -1,5 +1,9 @@
 """Whether the covariance that a filter claims is the one its error has, over many seeds.
 
+What is judged is what the station really had in its loop, over the scenario's link: its estimates,
+its innovations, and the prediction x̂_{k+n} by which it made its commands. Other filters are run
+beside it on what it heard.
+
 NEES is e^T P^-1 e of the estimate's error, NIS is v^T S^-1 v of the innovation. Of a consistent
 filter both are chi-square with 3 degrees of freedom, so N times their average over N seeds has 3 N
 of them: Bar-Shalom, Li, Kirubarajan, "Estimation with Applications to Tracking and Navigation",
@@ -7,6 +11,7 @@ section 5.4.
 """
 
 from collections.abc import Iterator, Sequence
+from functools import cache, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -14,11 +19,10 @@ from msgspec import Struct
 from numpy.typing import NDArray
 
 from laglab.interface import run
-from laglab.results.numbers import deviation
-from laglab.runs.station_side import robot_model
+from laglab.results.numbers import robot_pose
 from laglab.scenario import Scenario, changed
+from laglab.studies.overhearing import Known, Overhearing
 from laglab.studies.workers import shared_out
-from laglab_control import ESTIMATORS, Replay, constant_delay, replay
 from laglab_control.chi_square import chi_square_bound
 from laglab_gateway import Trace
 
@@ -31,48 +35,61 @@ NEES hang together, so that the share itself scatters."""
 
 
 class Sample(NamedTuple):
-    """One filter on the record of one seed, at every tick; NaN once it has diverged."""
+    """One filter in the loop of one seed, at every tick; NaN once it has diverged."""
 
     error: Array
-    """(N+1, 3)."""
+    """(N+1, 3), of x̂_k."""
     variances: Array
     """(N+1, 3), the diagonal of P."""
     nees: Array
     """(N+1,); NaN where P is not positive definite."""
     nis: Array
     """(N+1,); NaN where nothing was measured."""
+    nees_ahead: Array
+    """(N+1,): of x̂_{k+n}, by which the command was made, when the robot was there."""
+
+
+class Average(NamedTuple):
+    """Of NEES or NIS over the seeds, at the ticks from m on."""
+
+    values: Array
+    """NaN where no seed has a value."""
+    seeds: Array
+    """How many have one."""
+
+    @property
+    def mean(self) -> float:
+        """Over all ticks."""
+        return float(mean_of_known(self.values))
+
+    @property
+    def inside(self) -> float:
+        """The share of the ticks at which the average is within the bounds for so many seeds."""
+        low, high = np.array([chi_square_bounds(int(n)) for n in self.seeds]).T
+        within = (low <= self.values) & (self.values <= high)
+        return float(mean_of_known(np.where(self.seeds == 0, np.nan, within)))
 
 
 class Verdict(NamedTuple):
     """One filter over all seeds, ticks >= m."""
 
     estimator: str
-    nees: Array
-    """(N+1,), the average over the seeds at each tick."""
-    nis: Array
-    """(N+1,)."""
+    nees: Average
+    nis: Average
+    nees_ahead: Average
+    """Of the prediction x̂_{k+n}."""
+    of_runs: Array
+    """(seeds,): each run's own NEES, averaged over its ticks."""
     claimed: Array
-    """(N+1, 3), the standard deviations that P claims, root mean square over the seeds."""
+    """(N+1-m, 3), the standard deviations that P claims, root mean square over the seeds."""
     true: Array
-    """(N+1, 3), those that the errors have."""
+    """(N+1-m, 3), those that the errors have."""
     indefinite: float
     """The share of ticks at which P is not positive definite."""
     diverged: int
     """Seeds."""
     bounds: tuple[float, float]
-    """Of the average at one tick, at 95 %."""
-    measurement_delay: int
-
-    def mean(self, values: Array) -> float:
-        """Over the ticks >= m."""
-        return float(mean_of_known(values[self.measurement_delay :]))
-
-    def inside(self, values: Array) -> float:
-        """The share of the ticks >= m at which an average is within the bounds."""
-        low, high = self.bounds
-        settled = values[self.measurement_delay :]
-        within = (low <= settled) & (settled <= high)
-        return float(mean_of_known(np.where(np.isnan(settled), np.nan, within)))
+    """Of the average of all seeds at one tick, at 95 %."""
 
     @property
     def consistent(self) -> bool:
@@ -80,14 +97,17 @@ class Verdict(NamedTuple):
         P was always a covariance, and no seed diverged."""
         low, high = self.bounds
         within = all(
-            low <= self.mean(values) <= high and self.inside(values) >= INSIDE
-            for values in (self.nees, self.nis)
+            low <= average.mean <= high and average.inside >= INSIDE
+            for average in (self.nees, self.nis)
         )
         return within and not (self.indefinite or self.diverged)
 
 
+@cache
 def chi_square_bounds(seeds: int) -> tuple[float, float]:
     """Between which the average of NEES or NIS over the seeds lies with 95 % probability."""
+    if seeds == 0:
+        return np.nan, np.nan
     degrees = DEGREES * seeds
     tail = (1 - CONFIDENCE) / 2
     low, high = (chi_square_bound(above, degrees) / seeds for above in (1 - tail, tail))
@@ -122,46 +142,47 @@ def samples(
     Raises: RunError, when a worker fails or dies.
     """
     jobs = [Job(nth(scenario, number).to_toml(), tuple(estimators)) for number in range(seeds)]
-    for _, judged in shared_out(judge, jobs, workers):
-        yield {name: _unpacked(table) for name, table in judged.samples.items()}
+    for _, answer in shared_out(judge, jobs, workers):
+        yield {name: _unpacked(table) for name, table in answer.samples.items()}
 
 
 def judge(job: Job) -> Judged:
-    """In a worker: one loop with the scenario's own filter, and every filter on its record."""
+    """In a worker: one loop with the scenario's own filter, and the others beside it."""
     scenario = Scenario.from_toml(job.scenario)
-    trace = run(scenario).trace
-    answer = {}
-    for name in job.estimators:
-        replayed = _reestimated(scenario, name, trace)
-        error, P = deviation(trace, replayed.estimates), replayed.covariances
-        variances = np.diagonal(P, axis1=1, axis2=2)
-        answer[name] = np.column_stack((error, variances, _nees(error, P), replayed.nis)).tobytes()
-    return Judged(answer)
+    said: dict[str, list[Known]] = {}
+    others = tuple(name for name in job.estimators if name != scenario.estimator.kind)
+    done = run(scenario, controller=partial(Overhearing, others=others, said=said))
+    tables = {name: np.column_stack(judged(heard, done.trace)) for name, heard in said.items()}
+    return Judged({name: table.tobytes() for name, table in tables.items()})
+
+
+def judged(said: Sequence[Known], trace: Trace) -> Sample:
+    """What a filter said at the ticks of a run, beside where the robot was."""
+    pose = robot_pose(trace)
+    x, P, nis, ahead, P_ahead, n = (np.array(column) for column in zip(*said, strict=True))
+    error = _wrapped(x - pose[: len(x)])
+    arrival = np.arange(len(x)) + n
+    there = np.where((arrival < len(pose))[:, np.newaxis], pose[arrival % len(pose)], np.nan)
+    variances = np.diagonal(P, axis1=1, axis2=2)
+    return Sample(error, variances, _nees(error, P), nis, _nees(_wrapped(ahead - there), P_ahead))
 
 
 def _unpacked(table: bytes) -> Sample:
-    columns = np.frombuffer(table).reshape(-1, 8)
-    return Sample(columns[:, :3], columns[:, 3:6], columns[:, 6], columns[:, 7])
+    columns = np.frombuffer(table).reshape(-1, 9)
+    return Sample(columns[:, :3], columns[:, 3:6], *columns[:, 6:].T)
 
 
-def _reestimated(scenario: Scenario, name: str, trace: Trace) -> Replay:
-    """What the named estimator makes of a record."""
-    estimator = ESTIMATORS[name].make(robot_model(scenario))
-    inputs = np.stack([trace["v"], trace["omega"]], axis=1)[:-1]
-    measurements = np.stack([trace[f"{axis}_meas"] for axis in ("x", "y", "theta")], axis=1)
-    return replay(
-        estimator,
-        scenario.first_estimate(),
-        scenario.estimator.initial_covariance * np.eye(3),
-        inputs,
-        constant_delay(measurements, scenario.link.measurement_delay),
-    )
+def _wrapped(error: Array) -> Array:
+    error[:, 2] = np.remainder(error[:, 2] + np.pi, 2 * np.pi) - np.pi
+    return error
 
 
 def _nees(error: Array, P: Array) -> Array:
     nees = np.full(len(error), np.nan)
     for k, (e, covariance) in enumerate(zip(error, P, strict=True)):
-        if np.all(np.isfinite(covariance)) and np.linalg.eigvalsh(covariance)[0] > 0:
+        if not (np.isfinite(e).all() and np.isfinite(covariance).all()):
+            continue
+        if np.linalg.eigvalsh(covariance)[0] > 0:
             nees[k] = e @ np.linalg.solve(covariance, e)
     return nees
 
@@ -169,23 +190,27 @@ def _nees(error: Array, P: Array) -> Array:
 def verdict(name: str, of_seeds: Sequence[Sample], measurement_delay: int) -> Verdict:
     """All seeds of one filter together; a seed counts up to where it diverged."""
     length = max(len(one.nees) for one in of_seeds)
-    error, variances, nees, nis = (
-        np.stack([_padded(values, length) for values in column])
+    error, variances, nees, nis, nees_ahead = (
+        np.stack([_padded(values, length)[measurement_delay:] for values in column])
         for column in zip(*of_seeds, strict=True)
     )
-    settled = slice(measurement_delay, None)
-    alive = ~np.isnan(error[:, settled, 0])
+    alive = ~np.isnan(error[:, :, 0])
     return Verdict(
         name,
-        nees=mean_of_known(nees),
-        nis=mean_of_known(nis),
+        nees=_average(nees),
+        nis=_average(nis),
+        nees_ahead=_average(nees_ahead),
+        of_runs=mean_of_known(nees.T),
         claimed=np.sqrt(np.maximum(mean_of_known(variances), 0)),
         true=np.sqrt(mean_of_known(error**2)),
-        indefinite=float(mean_of_known(np.isnan(nees[:, settled])[alive].astype(np.float64))),
-        diverged=int(np.sum(np.isnan(error[:, -1, 0]))),
+        indefinite=float(mean_of_known(np.isnan(nees)[alive].astype(np.float64))),
+        diverged=int(np.sum(~alive[:, -1])),
         bounds=chi_square_bounds(len(of_seeds)),
-        measurement_delay=measurement_delay,
     )
+
+
+def _average(values: Array) -> Average:
+    return Average(mean_of_known(values), np.sum(~np.isnan(values), axis=0))
 
 
 def _padded(values: Array, length: int) -> Array:

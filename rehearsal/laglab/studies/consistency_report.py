@@ -11,7 +11,7 @@ from rich.table import Table
 
 from laglab.results.figure import empty_figure
 from laglab.scenario import Scenario
-from laglab.studies.consistency import Verdict, mean_of_known
+from laglab.studies.consistency import Average, Verdict, mean_of_known
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,13 +26,15 @@ def consistency_table(scenario: Scenario, verdicts: Sequence[Verdict], seeds: in
     table = Table(
         title=f"{scenario.name}: P_0 = {scenario.estimator.initial_covariance:g} I, n = "
         f"{scenario.link.command_delay}, m = {scenario.link.measurement_delay}, {seeds} seeds",
-        caption=f"of a consistent filter NEES and NIS average 3, here {low:.2f} to {high:.2f} "
-        "(95 %); % of ticks within; claimed : true standard deviation",
+        caption="In the loop, over its link. Of a consistent filter NEES and\n"
+        f"NIS average 3, here {low:.2f} to {high:.2f} (95 %); %: of ticks within.\n"
+        "Ahead: NEES of the prediction by which the command was made.\n"
+        "Worst: NEES of the worst run. x, y, θ: the standard deviation\n"
+        "claimed, by the true one. P<0: of ticks. Lost: runs.",
         box=None,
-        pad_edge=False,
-        collapse_padding=True,
+        padding=(0, 1, 0, 0),
     )
-    headings = ("filter", "NEES", "%", "NIS", "%", *AXES, "P not > 0", "diverged", "consistent")
+    headings = ("filter", "NEES", "%", "NIS", "%", "ahead", "worst", *AXES, "P<0", "lost", "")
     for heading in headings:
         table.add_column(heading, justify="left" if heading == "filter" else "right")
     for verdict in verdicts:
@@ -41,49 +43,52 @@ def consistency_table(scenario: Scenario, verdicts: Sequence[Verdict], seeds: in
 
 
 def _cells(verdict: Verdict) -> list[str]:
-    m = verdict.measurement_delay
-    claimed, true = (
-        np.sqrt(mean_of_known(values[m:] ** 2)) for values in (verdict.claimed, verdict.true)
-    )
+    claimed, true = (np.sqrt(mean_of_known(v**2)) for v in (verdict.claimed, verdict.true))
     return [
-        f"{verdict.mean(verdict.nees):.3g}",
-        f"{verdict.inside(verdict.nees):.0%}",
-        f"{verdict.mean(verdict.nis):.3g}",
-        f"{verdict.inside(verdict.nis):.0%}",
+        f"{verdict.nees.mean:.2f}",
+        f"{verdict.nees.inside:.0%}",
+        f"{verdict.nis.mean:.2f}",
+        f"{verdict.nis.inside:.0%}",
+        f"{verdict.nees_ahead.mean:.2f}",
+        f"{np.nanmax(verdict.of_runs, initial=0):.3g}",
         *(f"{ratio:.2f}" for ratio in claimed / true),
-        f"{verdict.indefinite:.1%}",
+        f"{verdict.indefinite:.0%}",
         str(verdict.diverged),
-        "yes" if verdict.consistent else "no",
+        "ok" if verdict.consistent else "no",
     ]
 
 
 def draw_consistency(scenario: Scenario, verdicts: Sequence[Verdict]) -> Figure:
-    """Average NEES and NIS against their bounds, and claimed against true errors."""
-    figure = empty_figure(13, 8)
-    (nees, nis, x), (y, theta, _) = axes = figure.subplots(2, 3)
-    axes[1, 2].axis("off")
-    ticks = np.arange(len(verdicts[0].nees))
+    """Average NEES, NIS and NEES of the prediction against their bounds, a panel a filter; each
+    run's own NEES; and claimed against true errors."""
+    figure = empty_figure(13, 3 + 2.2 * len(verdicts))
+    ticks = np.arange(len(verdicts[0].nees.values)) + scenario.link.measurement_delay
     time = np.asarray(ticks * scenario.sample_time, dtype=np.float64)
-    _draw_averages(nees, "average NEES", time, {v.estimator: v.nees for v in verdicts}, verdicts[0])
-    _draw_averages(nis, "average NIS", time, {v.estimator: v.nis for v in verdicts}, verdicts[0])
-    for i, (panel, name) in enumerate(zip((x, y, theta), AXES, strict=True)):
+    rows = figure.subplots(len(verdicts) + 1, 3, squeeze=False)
+    for panels, verdict in zip(rows, verdicts, strict=False):
+        for axes, (name, average) in zip(panels, _averages(verdict).items(), strict=True):
+            _draw_average(axes, f"{verdict.estimator}: {name}", time, average, verdict.bounds)
+    for i, (panel, name) in enumerate(zip(rows[-1], AXES, strict=True)):
         _draw_errors(panel, f"error in {name}: true (full), claimed (dashed)", time, verdicts, i)
-    axes[1, 2].legend(*nees.get_legend_handles_labels(), loc="center")
+    rows[-1][0].legend(fontsize="small")
     figure.suptitle(f"{scenario.name}: is the claimed covariance the true one?")
     return figure
 
 
-def _draw_averages(
+def _averages(verdict: Verdict) -> dict[str, Average]:
+    return {"NEES": verdict.nees, "NIS": verdict.nis, "NEES of x̂_{k+n}": verdict.nees_ahead}
+
+
+def _draw_average(
     axes: Axes,
     title: str,
     time: NDArray[np.float64],
-    averages: dict[str, NDArray[np.float64]],
-    verdict: Verdict,
+    average: Average,
+    bounds: tuple[float, float],
 ) -> None:
-    for name, values in averages.items():
-        axes.semilogy(time, values, label=name, linewidth=0.8)
-    axes.axhspan(*verdict.bounds, color="grey", alpha=0.3, label="95 % bounds")
-    axes.set(xlabel="t [s]", title=title)
+    axes.semilogy(time, average.values, linewidth=0.8)
+    axes.axhspan(*bounds, color="grey", alpha=0.4)
+    axes.set(xlabel="t [s]", title=title, ylim=(min(0.5, axes.get_ylim()[0]), None))
     axes.grid(alpha=0.3)
 
 
@@ -95,7 +100,7 @@ def _draw_errors(
     component: int,
 ) -> None:
     for verdict in verdicts:
-        (line,) = axes.semilogy(time, verdict.true[:, component])
+        (line,) = axes.semilogy(time, verdict.true[:, component], label=verdict.estimator)
         claimed = verdict.claimed[:, component]
         axes.semilogy(time, claimed, linestyle="--", color=line.get_color())
     axes.set(xlabel="t [s]", title=title)

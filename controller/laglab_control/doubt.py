@@ -1,0 +1,85 @@
+"""What is not known of the inputs, as a covariance: an estimator takes all of them for true.
+
+Until an echo comes an input is only believed. It may have come into force a little earlier or later
+than the commands usually do; when the echoes stop coming, the last one known may have been held all
+the while. Both are one vector d of what the pose [m, m, rad] would differ by, and its claimed
+covariance is d d^T.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from laglab_control.angle import direction
+from laglab_control.flight import Flight, believed_at, believed_sum
+from laglab_control.model import Matrix, Vector
+from laglab_control.robot import RobotModel
+
+PATIENCE = 5
+"""Ticks by which an echo may be late before its link counts as interrupted."""
+
+
+class Missed(NamedTuple):
+    """What the robot would have done more if it had done as believed."""
+
+    distance: float
+    """[m], forward."""
+    turn: float
+    """[rad]."""
+    length: float
+    """[m] The way over which it would have."""
+
+
+def doubt(flight: Flight, robot: RobotModel, x: Vector) -> Matrix | None:
+    """To be added to the covariance (3, 3) of the pose x (3,); None: all is as it usually is."""
+    missed = list(_missed(flight, robot.sample_time))
+    if not missed:
+        return None
+    cosine, sine = direction(float(x[2]))
+    total = np.zeros((3, 3))
+    for distance, turn, length in missed:
+        aside = length / 2 * turn
+        d = np.array((distance * cosine - aside * sine, distance * sine + aside * cosine, turn))
+        total += np.outer(d, d)
+    return total
+
+
+def _missed(flight: Flight, Ts: float) -> Iterator[Missed]:
+    told = flight.told
+    if told.usual is None:
+        return
+    believed = flight.tick - 1 - told.known
+    if believed > told.usual + PATIENCE:
+        yield _held(flight, Ts, believed)
+    elif told.spread:
+        yield _shifted(flight, Ts, believed, told.spread)
+    if told.missing:
+        yield _untold(flight, Ts)
+
+
+def _held(flight: Flight, Ts: float, believed: int) -> Missed:
+    """As if the last input known had been in force ever since."""
+    v_sum, omega_sum = believed_sum(flight, flight.told.known + 1)
+    v, omega = flight.told.in_force.tolist()
+    return Missed(Ts * (v_sum - believed * v), Ts * (omega_sum - believed * omega), Ts * abs(v_sum))
+
+
+def _shifted(flight: Flight, Ts: float, believed: int, spread: float) -> Missed:
+    """As if they had all come `spread` ticks later."""
+    if believed <= 0:
+        return Missed(0.0, 0.0, 0.0)
+    v, omega = flight.told.in_force.tolist()
+    v_now, omega_now = believed_at(flight, flight.tick - 1).tolist()
+    late = Ts * spread
+    return Missed(late * (v_now - v), late * (omega_now - omega), Ts * believed * abs(v_now))
+
+
+def _untold(flight: Flight, Ts: float) -> Missed:
+    """As if the last input known had been in force at all ticks of which nothing was told."""
+    missing = flight.told.missing
+    v, omega = flight.told.before.tolist()
+    inputs = [believed_at(flight, tick).tolist() for tick in missing]
+    distance = Ts * sum(each[0] - v for each in inputs)
+    turn = Ts * sum(each[1] - omega for each in inputs)
+    return Missed(distance, turn, Ts * len(missing) * abs(v))

@@ -1,0 +1,25 @@
+"""What the controller's answer is in messages."""
+
+from collections.abc import Sequence
+
+from laglab_control import Control
+from laglab_protocol import Command, Estimate, Message
+
+
+def said(
+    tick: int, control: Control, robot: tuple[int, int], asks: Sequence[Message] = ()
+) -> list[Message]:
+    """The answer to this robot's tick; the command closes it, and says how many went before."""
+    before = [*asks, *_estimate(tick, control)]
+    v, omega, _ = control.drive
+    return [*before, Command(v, omega, tick, *robot, estimates=len(before))]
+
+
+def _estimate(tick: int, control: Control) -> list[Estimate]:
+    """The report of the estimate; none when nothing is claimed for it."""
+    pose, P = control.estimate.x, control.P
+    if pose is None or P is None:
+        return []
+    (xx, xy, xt), (_, yy, yt), (_, _, tt) = P.tolist()
+    x, y, theta = pose.tolist()
+    return [Estimate(x, y, theta, xx, xy, xt, yy, yt, tt, tick)]

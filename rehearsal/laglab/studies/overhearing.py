@@ -1,0 +1,90 @@
+"""What the station knew at every tick of a run, and what other filters make of what it heard."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from laglab_control import Applied, Control, Controller, Echo, Measured
+from laglab_control.estimators.kalman import normalised_squared
+
+Array = NDArray[np.float64]
+NOTHING = np.full((3, 3), np.nan)
+
+
+class Known(NamedTuple):
+    """One filter at one tick; NaN where it says nothing."""
+
+    x: Array
+    """(3,)."""
+    P: Array
+    """(3, 3)."""
+    nis: float
+    """Of the newest measurement that came."""
+    ahead: Array
+    """x̂_{k+n} (3,)."""
+    ahead_P: Array
+    """(3, 3)."""
+    n: int
+
+
+def known(controller: Controller, control: Control, news: bool) -> Known:
+    """All of it; `news`: whether a measurement came at this tick."""
+    x, P, n = control.estimate.x, control.P, control.flight.command_delay
+    ahead = controller.at_arrival(control)
+    if x is None or P is None or ahead is None or not np.all(np.isfinite(x)):
+        return Known(NOTHING[0], NOTHING, np.nan, NOTHING[0], NOTHING, n)
+    innovation = controller.innovation(control) if news else None
+    nis = normalised_squared(innovation) if innovation else np.nan
+    return Known(x[:3], P[:3, :3], nis, ahead.x, ahead.P, n)
+
+
+@dataclass(frozen=True, eq=False)
+class Overhearing(Controller):
+    """The station's controller, with others beside it that hear the same and whose commands are
+    its own; what they all say is kept in `said`, by filter, tick by tick."""
+
+    others: Sequence[str] = ()
+    """Filters, as they are: without a guard."""
+    said: dict[str, list[Known]] = field(default_factory=dict)
+    _beside: dict[str, Control] = field(default_factory=dict)
+
+    @cached_property
+    def _controllers(self) -> dict[str, Controller]:
+        configs = {name: replace(self.config, estimator=name, guard=False) for name in self.others}
+        return {name: Controller(config) for name, config in configs.items()}
+
+    def start(self) -> Control:
+        """Of all of them."""
+        self.said.clear()
+        self._beside.update({name: each.start() for name, each in self._controllers.items()})
+        return super().start()
+
+    def answer(
+        self,
+        control: Control,
+        measurements: Sequence[Measured],
+        echoes: Sequence[Echo] = (),
+        recalled: Sequence[Applied] = (),
+    ) -> Control:
+        """The station's own; the others follow it up to here."""
+        news = bool(measurements)
+        for name, beside in list(self._beside.items()):
+            each = self._controllers[name]
+            while beside.flight.tick < control.flight.tick:
+                beside = each.advance(beside)
+            beside = self._beside[name] = each.answer(beside, measurements, echoes, recalled)
+            self._note(name, known(each, beside, news))
+        control = super().answer(control, measurements, echoes, recalled)
+        self._beside.update({n: b._replace(drive=control.drive) for n, b in self._beside.items()})
+        self._note(self.config.estimator, known(self, control, news))
+        return control
+
+    def _note(self, name: str, what: Known) -> None:
+        """What has become infinite says no more."""
+        self.said.setdefault(name, []).append(what)
+        if not np.isfinite(what.x).all():
+            self._beside.pop(name, None)
