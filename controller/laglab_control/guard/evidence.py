@@ -5,12 +5,11 @@ Of a filter that is right about itself the normalised innovations squared (NIS) 
 mean 0. Both are tested over windows, at a level that a run of thousands of ticks seldom reaches.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
-import numpy as np
-
 from laglab_control.chi_square import chi_square_bound
-from laglab_control.estimators.kalman import Innovation, normalised_squared
+from laglab_control.estimators.kalman import Triangle, weighted
 from laglab_control.past.log import Log, append, logged
 
 IMPROBABLE = 1e-6
@@ -50,12 +49,12 @@ def no_evidence() -> Evidence:
     return logged(NO_EVIDENCE)
 
 
-def weighed(evidence: Evidence, innovation: Innovation, nis: float) -> Evidence:
-    """With one more; of a wild one only that it is wild."""
+def weighed(evidence: Evidence, innovation: Sequence[float], nis: float) -> Evidence:
+    """With one more (3,); of a wild one only that it is wild."""
     total, x, y, theta = evidence.newest
     if not nis <= WILD:  # nor is what is not finite
         return append(evidence, Sums(total + WILD, x, y, theta), DRIFTS[-1] + 1)
-    v_x, v_y, v_theta = innovation.value.tolist()
+    v_x, v_y, v_theta = innovation
     sums = Sums(total + nis, x + v_x, y + v_y, theta + v_theta)
     return append(evidence, sums, DRIFTS[-1] + 1)
 
@@ -69,11 +68,11 @@ class Contradiction(NamedTuple):
     """Whether the estimate lags behind, as with a wrong model; else it is somewhere else."""
 
 
-def contradiction(evidence: Evidence, innovation: Innovation) -> Contradiction | None:
-    """None when all can be noise. `innovation` is the newest."""
+def contradiction(evidence: Evidence, weights: Triangle) -> Contradiction | None:
+    """None when all can be noise. `weights`: S^-1 of the newest innovation."""
     if cause := _spread(evidence):
         return Contradiction(cause, drift=False)
-    cause = _drift(evidence, innovation)
+    cause = _drift(evidence, weights)
     return Contradiction(cause, drift=True) if cause else None
 
 
@@ -92,7 +91,7 @@ def _spread(evidence: Evidence) -> str | None:
     )
 
 
-def _drift(evidence: Evidence, innovation: Innovation) -> str | None:
+def _drift(evidence: Evidence, weights: Triangle) -> str | None:
     """N b^T S^-1 b of the mean b of N innovations, with the S of the newest, is chi-square too."""
     items, length = evidence
     if length % EVERY:
@@ -102,7 +101,7 @@ def _drift(evidence: Evidence, innovation: Innovation) -> str | None:
         if count < DRIFTS[0]:
             return None
         mean = _mean(items[length - 1 - count], items[length - 1], count)
-        if count * normalised_squared(Innovation(np.array(mean), innovation.S)) > WILD:
+        if count * weighted(mean, weights) > WILD:
             x, y, theta = mean
             return (
                 f"the last {count} measurements lie on one side of the estimate: on average by "

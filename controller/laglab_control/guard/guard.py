@@ -18,7 +18,7 @@ from laglab_control.estimators.interface import (
     State,
     by_sampling,
 )
-from laglab_control.estimators.kalman import Belief, Innovation, normalised_squared
+from laglab_control.estimators.kalman import Belief, Innovation, precision, weighted
 from laglab_control.estimators.windows import RigidMotions
 from laglab_control.guard.evidence import (
     WILD,
@@ -201,11 +201,12 @@ class Guard(Estimator[Watched]):
     def _judged(
         self, state: Watched, measured: Measured, tried: State, innovation: Innovation
     ) -> Watched:
-        nis, evidence = normalised_squared(innovation), state.evidence
+        v, weights, evidence = innovation.value.tolist(), precision(innovation.S), state.evidence
+        nis = weighted(v, weights)
         found, seen = None, state.seen.and_of(measured.tick)
         if seen.newest == measured.tick:  # what is late was weighed by those after it
-            evidence = weighed(evidence, innovation, nis)
-            found = contradiction(evidence, innovation)
+            evidence = weighed(evidence, v, nis)
+            found = contradiction(evidence, weights)
         if nis <= WILD:
             state = state._replace(state=tried, seen=seen, evidence=evidence)
             return self._begun_again(state, measured, found) if found else self._used(state)
