@@ -12,7 +12,15 @@ from numpy.typing import ArrayLike
 from laglab_control.doubt import doubt
 from laglab_control.errors import ConfigError
 from laglab_control.estimators.family import EstimatorKind, estimator_kind
-from laglab_control.estimators.interface import Applied, Calibration, Estimator, Measured, State
+from laglab_control.estimators.interface import (
+    Applied,
+    Calibration,
+    Estimator,
+    Measured,
+    State,
+    claim_of,
+    pose_of,
+)
 from laglab_control.estimators.kalman import Belief, Innovation
 from laglab_control.flight import Echo, Flight, hear, send, take_off
 from laglab_control.guard import Alarm, Guard, Watched
@@ -73,9 +81,11 @@ class Control(NamedTuple):
     flight: Flight
     drive: Demand
     """The last command."""
+    pose: Vector | None = None
+    """The estimate (3,) [m, m, rad] after the tick's correction; None: there is none."""
     P: Matrix | None = None
-    """What is claimed for the error of the estimate after the tick's correction: the estimator's
-    covariance, and what is not known of the inputs; None: nothing."""
+    """What is claimed for its error (3, 3): the estimator's covariance, and what is not known of
+    the inputs; None: nothing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,14 +127,14 @@ class Controller:
 
     def advance(self, control: Control) -> Control:
         """One tick later: the last command is on its way, the one n ticks older was applied."""
-        estimate, flight, drive, _ = control
+        estimate, flight, drive, *_ = control
         flight, applied = send(self._robot(estimate), flight, as_input(drive))
         estimate = self._estimator.predict(estimate, self._applied(applied, drive))
         return Control(estimate, flight, drive)
 
     def expect(self, control: Control, s: int) -> Control:
         """The same, prepared for a measurement sampled at tick s, which is likely to come."""
-        estimate, flight, drive, _ = control
+        estimate, flight, drive, *_ = control
         return Control(self._estimator.expect(estimate, s), flight, drive)
 
     def answer(
@@ -138,29 +148,27 @@ class Controller:
 
         The robot is to stand still when there is no estimate to drive it by, or it has diverged.
         """
-        estimate, flight, drive, _ = control
+        estimate, flight, drive, *_ = control
         flight, inputs = hear(self._robot(estimate), flight, echoes, recalled)
         if self._guard and isinstance(estimate, Watched):
             settled = flight.told.settled
             estimate = self._guard.correct(estimate, measurements, inputs, settled)
         else:
             estimate = self._estimator.correct(estimate, measurements, inputs)
-        P = self._claimed(estimate, flight)
-        return Control(estimate, flight, self._command(estimate, flight, drive, P), P)
+        pose, P = pose_of(estimate), claim_of(estimate)
+        if pose is not None and P is not None:
+            unknown = doubt(flight, self.config.model, pose)
+            P = P if unknown is None else P + unknown
+        return Control(estimate, flight, self._command(pose, P, flight, drive), pose, P)
 
-    def _command(self, estimate: State, flight: Flight, last: Demand, P: Matrix | None) -> Demand:
-        if estimate.x is None or self.diverged(estimate.x):
+    def _command(
+        self, pose: Vector | None, P: Matrix | None, flight: Flight, last: Demand
+    ) -> Demand:
+        if pose is None or self.diverged(pose):
             return STAND_STILL
         law = self.config.law
-        demand = law.drive(self._at_arrival(estimate.x, flight, last), last.at_goal)
+        demand = law.drive(self._at_arrival(pose, flight, last), last.at_goal)
         return demand if P is None else law.slowed(demand, P)
-
-    def _claimed(self, estimate: State, flight: Flight) -> Matrix | None:
-        x, P = estimate.x, estimate.P
-        if x is None or P is None:
-            return None
-        unknown = doubt(flight, self.config.model, x)
-        return P if unknown is None else P + unknown
 
     def diverged(self, x: Vector) -> bool:
         """Whether a pose estimate is not finite, or FAR from where it began and from the goal."""
@@ -178,7 +186,7 @@ class Controller:
     def at_arrival(self, control: Control) -> Belief | None:
         """x̂_{k+n}, by which the command was made, and the covariance that the model claims for it;
         None where there is no estimate."""
-        x, P, flight = control.estimate.x, control.P, control.flight
+        x, P, flight = control.pose, control.P, control.flight
         if x is None or P is None:
             return None
         pose = self._at_arrival(x, flight, control.drive)

@@ -17,7 +17,7 @@ def said(
 
 def _estimate(tick: int, control: Control) -> list[Estimate]:
     """The report of the estimate; none when nothing is claimed for it."""
-    pose, P = control.estimate.x, control.P
+    pose, P = control.pose, control.P
     if pose is None or P is None:
         return []
     (xx, xy, xt), (_, yy, yt), (_, _, tt) = P.tolist()

@@ -39,7 +39,7 @@ def shadow(config: StationConfig, session: Iterable[SessionTick]) -> Iterator[Sh
             control = controller.advance(control)
         last = heard.tick
         control = _followed(controller, control, heard, first)
-        x, P = control.estimate.x, control.estimate.P
+        x, P = control.pose, control.P
         if x is not None and not np.all(np.isfinite(x)):
             return
         yield ShadowRow(last, NOTHING[0] if x is None else x, NOTHING if P is None else P)

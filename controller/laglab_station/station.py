@@ -291,8 +291,8 @@ class Station:
         alarms = self._alarms.note(self._controller, self._control, tick)
         self._answer = [*alarms, *said(tick, self._control, self._peer, asks)]
         self._unjudged = bool(arrived)
-        x = self._control.estimate.x
-        if x is not None and self._controller.diverged(x):
+        pose = self._control.pose
+        if pose is not None and self._controller.diverged(pose):
             self._end_diverged(tick)
 
     def _look_back(self) -> None:

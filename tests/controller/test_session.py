@@ -57,3 +57,20 @@ def test_the_shadow_of_a_station_says_what_the_station_said(estimator):
     replayed = list(shadow(config, session))
     np.testing.assert_array_equal([row.x for row in replayed], said)
     assert [row.tick for row in replayed] == [heard.tick for heard in session]
+
+
+def test_what_strangers_say_is_not_the_robots():
+    """A log may hold the frames of others: of another robot, another station, a ground station."""
+    ours = frames(Tick(0, 0), u(0), z(0), Tick(1, 1), u(1))
+    others = [
+        frame
+        for sender, message in [
+            (Sender(7, 1), z(0, 50.0)),
+            (Sender(7, 1), Tick(4_000_000, 1)),
+            (Sender(255, 190), u(1)),
+            (Sender(1, 99), Tick(2, 0)),
+        ]
+        for frame in frames_in(sender.frame(message))
+    ]
+    mixed = [frame for pair in zip(ours, [*others, others[0]], strict=True) for frame in pair]
+    assert list(heard(mixed)) == list(heard(ours))

@@ -7,6 +7,7 @@ import pytest
 
 from laglab.command import main
 from laglab_gateway import read_trace
+from laglab_protocol import Measurement, Sender, Tick, read_tlog, tlog_record
 
 
 def replay(*arguments):
@@ -77,3 +78,26 @@ def test_what_cannot_be_replayed_is_said_in_one_line(run, tmp_path, capsys, argu
     places = {"log": run / "robot.tlog", "empty": empty}
     assert replay(*(argument.format(**places) for argument in arguments)) == 2
     assert said in capsys.readouterr().err
+
+
+def test_frames_of_other_systems_change_nothing(run, stations_estimates, tmp_path):
+    stranger, log = Sender(7, 1), run / "robot.tlog"
+    records = [
+        tlog_record(time, frame.raw)
+        + tlog_record(time, stranger.frame(Measurement(9.0, 9.0, 9.0, 0.0, 0.0, 10**6, -1)))
+        + tlog_record(time, stranger.frame(Tick(10**6, 1)))
+        for time, frame in read_tlog(log)
+    ]
+    log.write_bytes(b"".join(records))
+    out = tmp_path / "again"
+    assert replay(log, "--estimator", "delayed-ekf", "--out", out) == 0
+    np.testing.assert_array_equal(estimates(out / "delayed-ekf.csv"), stations_estimates)
+
+
+def test_a_tick_beyond_the_run_is_none_of_it(run, stations_estimates, tmp_path):
+    robot, log = Sender(1, 1), run / "robot.tlog"
+    with log.open("ab") as file:
+        file.write(tlog_record(0, robot.frame(Tick(5000, 0))))
+    out = tmp_path / "beyond"
+    assert replay(log, "--estimator", "delayed-ekf", "--out", out) == 0
+    assert np.array_equal(estimates(out / "delayed-ekf.csv")[:201], stations_estimates)

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol, TypeVar
 
-from laglab_control.errors import StampError
+from laglab_control.errors import ControlError, StampError
 from laglab_control.estimators.kalman import Innovation
 from laglab_control.model import Matrix, Vector
 from laglab_control.robot import Ways
@@ -63,6 +63,28 @@ class State(Protocol):
     def P(self) -> Matrix | None:
         """Its claimed covariance (d, d); None for `raw`, which claims none."""
         ...
+
+
+def pose_of(state: State) -> Vector | None:
+    """The pose (3,) [m, m, rad] in the state: its `pose` if it has one, else the first three of x.
+
+    None while there is no estimate. Raises ControlError when the state holds none.
+    """
+    x: Vector | None = getattr(state, "pose", state.x)
+    if x is None or len(x) == 3:
+        return x
+    if len(x) < 3:
+        raise ControlError(
+            f"a state of {len(x)} components is no pose: let x begin with x, y, theta, or give the "
+            "state a `pose`"
+        )
+    return x[:3]
+
+
+def claim_of(state: State) -> Matrix | None:
+    """The covariance (3, 3) that is claimed for it: the leading block of P."""
+    P = state.P
+    return P if P is None or len(P) == 3 else P[:3, :3]
 
 
 S = TypeVar("S", bound=State)

@@ -17,6 +17,7 @@ from laglab_control.estimators.interface import (
     Measured,
     State,
     by_sampling,
+    pose_of,
 )
 from laglab_control.estimators.kalman import Belief, Innovation, precision, weighted
 from laglab_control.estimators.windows import RigidMotions
@@ -78,6 +79,11 @@ class Watched(NamedTuple):
     def x(self) -> Vector | None:
         """The estimate (d,)."""
         return self.state.x
+
+    @property
+    def pose(self) -> Vector | None:
+        """The pose in it (3,)."""
+        return pose_of(self.state)
 
     @property
     def P(self) -> Matrix | None:
@@ -223,8 +229,9 @@ class Guard(Estimator[Watched]):
     def _begun_again(self, state: Watched, measured: Measured, found: Contradiction) -> Watched:
         """The measurement is all that is known of the pose."""
         x = np.array(measured.z)
-        if state.x is not None and math.isfinite(state.x[2]):
-            x[2] += 2 * math.pi * round(float(state.x[2] - x[2]) / (2 * math.pi))
+        before = state.pose
+        if before is not None and math.isfinite(before[2]):
+            x[2] += 2 * math.pi * round(float(before[2] - x[2]) / (2 * math.pi))
         state, begun = self._replacement(state, x, found.drift)
         state = self._from(state._replace(evidence=no_evidence()), measured.tick, begun)
         return state._replace(alarm=Alarm(state.tick, found.cause))

@@ -33,13 +33,13 @@ class Known(NamedTuple):
 
 def known(controller: Controller, control: Control, news: bool) -> Known:
     """All of it; `news`: whether a measurement came at this tick."""
-    x, P, n = control.estimate.x, control.P, control.flight.command_delay
+    x, P, n = control.pose, control.P, control.flight.command_delay
     ahead = controller.at_arrival(control)
     if x is None or P is None or ahead is None or not np.all(np.isfinite(x)):
         return Known(NOTHING[0], NOTHING, np.nan, NOTHING[0], NOTHING, n)
     innovation = controller.innovation(control) if news else None
     nis = normalised_squared(innovation) if innovation else np.nan
-    return Known(x[:3], P[:3, :3], nis, ahead.x, ahead.P, n)
+    return Known(x, P, nis, ahead.x, ahead.P, n)
 
 
 @dataclass(frozen=True, eq=False)
