@@ -62,6 +62,7 @@ from laglab_protocol.messages.standard import (
     SystemTime,
     Timesync,
 )
+from laglab_protocol.ration import Ration
 from laglab_protocol.restart import Restart
 from laglab_protocol.settings import differences, refuse_other_sample_time
 from laglab_protocol.signing.keys import Codec, make_key, read_key, refuse_open_door
@@ -121,6 +122,7 @@ __all__ = [
     "PortBusyError",
     "ProtocolError",
     "Quantiles",
+    "Ration",
     "Recall",
     "Receiver",
     "Refusal",

@@ -27,13 +27,13 @@ class Listener:
         self._receiver = receiver
         self._now = now
         self._last_byte = now()
-        self.idle = True
-        """Whether nothing at all came the last time."""
+        self.taken = 0
+        """Bytes that came the last time."""
 
     def listen(self, timeout: float) -> list[Frame]:
         """The frames that are whole with what arrives within `timeout` [s]."""
         data = self.link.receive(timeout)
-        self.idle = not data
+        self.taken = len(data)
         if self.link.datagrams:
             return self._receiver.receive(data, whole=True) if data else []
         now = self._now()

@@ -39,6 +39,11 @@ class Frame(Struct, frozen=True, gc=False):
     sequence: int
     raw: bytes
 
+    @property
+    def signed(self) -> bool:
+        """Whether it carries a signature; if it was delivered, one of the key's holders'."""
+        return bool(self.raw[2] & SIGNED)
+
 
 class Refusal(Enum):
     """Why no frame is delivered from a start byte."""
