@@ -19,7 +19,7 @@ from laglab_gateway.memory import Owed, SpeedMemory
 from laglab_gateway.outcome import Outcome, reason_of
 from laglab_gateway.record.audit import Audit, DirectionAudit
 from laglab_gateway.record.trace import TraceRow
-from laglab_gateway.services import RobotState, Services, safety_now
+from laglab_gateway.services import Asker, RobotState, Services, safety_now
 from laglab_protocol import (
     MAV_SEVERITY_WARNING,
     ROBOT_COMPONENT,
@@ -144,12 +144,12 @@ class RobotSide(ABC):
         """The same messages in new frames: the station may have missed the first."""
         return [self._sender.frame(message) for message in self._batch]
 
-    def hear(self, frames: Sequence[Frame]) -> list[bytes]:
-        """Take frames from the link; returns what to say to whoever sent them."""
+    def hear(self, frames: Sequence[Frame], asker: Asker | None = None) -> list[bytes]:
+        """Take frames from the link; returns what to say to whoever sent them, the asker."""
         replies: list[Message] = []
         for frame in frames:
             if not from_station(frame) or not self._take(frame.message):
-                replies += self._answers(frame)
+                replies += self._answers(frame, asker)
         return [self._sender.frame(message) for message in replies]
 
     def _take(self, message: Message) -> bool:
@@ -184,11 +184,11 @@ class RobotSide(ABC):
         if self.outcome or (begun and self._answered_through <= end.tick <= self.tick):
             self.station_end = end
 
-    def _answers(self, frame: Frame) -> list[Message]:
+    def _answers(self, frame: Frame, asker: Asker | None) -> list[Message]:
         if from_station(frame) and isinstance(frame.message, Settings):
             self.station_settings = frame.message
             return [self.settings]
-        return self.services.answer(frame, self.state)
+        return self.services.answer(frame, self.state, asker)
 
     def _take_answer(self, command: Command) -> None:
         if len(self._estimates) + len(self._recalls) < command.estimates:

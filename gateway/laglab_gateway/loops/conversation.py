@@ -5,10 +5,11 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 
 from laglab_gateway.errors import StationSilentError
+from laglab_gateway.loops.datagrams import datagrams
 from laglab_gateway.loops.surroundings import Surroundings
 from laglab_gateway.loops.watch import Watch
 from laglab_gateway.record.recorder import Recorder
-from laglab_gateway.services import heartbeat
+from laglab_gateway.services import Askers, heartbeat
 from laglab_gateway.side import RobotSide, from_station
 from laglab_protocol import (
     EndpointError,
@@ -25,9 +26,6 @@ TIMESYNC_TICKS = 10
 
 END_TRIES = 5
 """A lost END only costs the station its silence timeout, so a few tries are enough."""
-
-LARGEST_DATAGRAM = 1200
-"""[bytes] Every path carries so many in one piece, and no answer is worth more than a piece."""
 
 KNOCK_PERIOD = 0.5
 """[s]"""
@@ -51,6 +49,7 @@ class Conversation:
         self._heard, self._heard_tick = self.now(), 0
         self._settings: Settings | None = None
         self._told: set[str] = set()
+        self._askers = Askers()
         self._begun = False
         self._knocked = -math.inf
 
@@ -117,7 +116,8 @@ class Conversation:
         if frames and any(from_station(frame) for frame in frames):
             frames = self._of_the_station_in_force(frames)
         if frames:
-            replies = self._gateway.hear(frames)
+            asker = self._askers.heard_from(self._link.sender, self.now())
+            replies = self._gateway.hear(frames, asker)
             self._recorder.frames(self._gateway.time_us, [frame.raw for frame in frames])
             if replies:
                 self._reply(replies)
@@ -140,8 +140,8 @@ class Conversation:
     def _reply(self, frames: list[bytes]) -> None:
         """To whoever asked; what does not get there is the asker's loss, not the run's."""
         try:
-            for datagram in _datagrams(frames):
-                self._link.send(datagram, to=self._link.sender)
+            for datagram in datagrams(frames):
+                self._link.offer(datagram, to=self._link.sender)
         except EndpointError as error:
             self._warn(f"an answer was not sent: {error}")
         self._recorder.frames(self._gateway.time_us, frames)
@@ -214,14 +214,3 @@ class Conversation:
             self.send([self._gateway.end(outcome.reason)])
             if self.listen_for(lambda: self._gateway.station_end is not None):
                 return
-
-
-def _datagrams(frames: Sequence[bytes]) -> Iterator[bytes]:
-    """The frames in as few pieces as every path carries."""
-    piece = b""
-    for frame in frames:
-        if piece and len(piece) + len(frame) > LARGEST_DATAGRAM:
-            yield piece
-            piece = b""
-        piece += frame
-    yield piece
