@@ -10,6 +10,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 
 from laglab_protocol.framing.frame import START, Frame, Refusal, decode
+from laglab_protocol.framing.starts import next_start
 from laglab_protocol.signing.signature import Verifier
 
 Peer = tuple[int, int]
@@ -106,11 +107,12 @@ class Receiver:
         return frames
 
     def _pass_over(self, refusal: Refusal | None, buffer: bytes, position: int) -> int:
-        """The position of the next start byte: at least one byte on, however long the frame."""
+        """The position of the next possible start: at least one byte on, however long the frame."""
         if refusal:
             self._refused[refusal] += 1
-        following = buffer.find(START, position + 1)
-        after = following if following >= 0 else len(buffer)
+        after = next_start(buffer, position + 1)
+        if unknown := buffer.count(START, position + 1, after):
+            self._refused[Refusal.UNKNOWN] += unknown
         self._noise += after - position
         return after
 
