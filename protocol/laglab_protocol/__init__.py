@@ -63,6 +63,7 @@ from laglab_protocol.messages.standard import (
     Timesync,
 )
 from laglab_protocol.ration import Ration
+from laglab_protocol.refusals import Refusals
 from laglab_protocol.restart import Restart
 from laglab_protocol.settings import differences, refuse_other_sample_time
 from laglab_protocol.signing.keys import Codec, make_key, read_key, refuse_open_door
@@ -126,6 +127,7 @@ __all__ = [
     "Recall",
     "Receiver",
     "Refusal",
+    "Refusals",
     "Restart",
     "Sender",
     "SerialPair",

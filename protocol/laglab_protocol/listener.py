@@ -1,6 +1,6 @@
 """Listening: bytes in, frames out, whatever they come over."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from time import monotonic
 
 from laglab_protocol.endpoints import Link
@@ -9,8 +9,6 @@ from laglab_protocol.framing.receiver import Receiver
 
 STREAM_SILENCE = 0.05
 """[s] Bytes that follow each other on a serial line, however slow, come sooner than this."""
-
-ANOTHER_KEY = (Refusal.UNSIGNED, Refusal.BAD_SIGNATURE, Refusal.NO_KEY)
 
 
 class Listener:
@@ -48,7 +46,6 @@ class Listener:
         self._receiver.receive(b"", whole=True)
 
     @property
-    def refused(self) -> int:
-        """Frames not taken so far because of their signature: another key, or none."""
-        counts = self._receiver.counters.refused
-        return sum(counts.get(reason, 0) for reason in ANOTHER_KEY)
+    def refused(self) -> Mapping[Refusal, int]:
+        """By reason, from how many start bytes so far no frame was taken."""
+        return self._receiver.refused

@@ -15,6 +15,7 @@ from laglab_protocol import (
     EndpointError,
     EndReason,
     Frame,
+    Refusals,
     Settings,
     SettingsError,
     differences,
@@ -31,7 +32,7 @@ KNOCK_PERIOD = 0.5
 """[s]"""
 
 PATIENT_WITH_KEYS = 1.0
-"""[s] After so long without a frame that we may take, we say how many we may not."""
+"""[s] So often we say which frames we may not take."""
 
 
 class Conversation:
@@ -52,6 +53,8 @@ class Conversation:
         self._askers = Askers()
         self._begun = False
         self._knocked = -math.inf
+        self._refusals = Refusals()
+        self._tell_at = self.now() + PATIENT_WITH_KEYS
 
     @contextmanager
     def run(self) -> Iterator[None]:
@@ -78,8 +81,7 @@ class Conversation:
             self.listen(self._patience.repeat_after)
             self._recorder.flush()
             waited = self.now() - started
-            if waited > PATIENT_WITH_KEYS:
-                self._tell_of_keys()
+            self._tell_of_keys()
             if self._patience.connect is not None and waited > self._patience.connect:
                 raise StationSilentError(None, waited)
         self._begun = True
@@ -168,11 +170,12 @@ class Conversation:
             self._gateway.announce(text)
 
     def _tell_of_keys(self) -> None:
-        if (refused := self._listener.refused) and "keys" not in self._told:
-            self._told.add("keys")
-            self._around.warn(
-                f"{self._link.name}: {refused} frames refused: not signed with this key"
-            )
+        """Now and then: whose frames we may not take, and how to mend that."""
+        if (now := self.now()) < self._tell_at:
+            return
+        self._tell_at = now + PATIENT_WITH_KEYS
+        for text in self._refusals.news([self._listener, *self._watch.listeners]):
+            self._around.warn(text)
 
     def _look_around(self) -> None:
         """Say what was announced, and look after those who watch."""
@@ -180,6 +183,7 @@ class Conversation:
             self._watch.tell(notices)
             self.send(self._gateway.framed(notices))
         self._watch.poll(lambda: self._gateway.state)
+        self._tell_of_keys()
         for name in self._watch.take_lost():
             self._gateway.announce(f"lost the watcher {name}")
 

@@ -91,6 +91,11 @@ class Watch:
         lost, self._lost = self._lost, []
         return lost
 
+    @property
+    def listeners(self) -> list[Listener]:
+        """All that is listened to."""
+        return [watcher.listener for watcher in self._watchers]
+
     def _all(self) -> Iterator[tuple[Watcher, Address | None, Asker]]:
         for watcher in self._watchers:
             for address, asker in watcher.askers.known():

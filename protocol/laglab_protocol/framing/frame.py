@@ -64,6 +64,8 @@ class Refusal(Enum):
     """Signed, and we have no key to tell by whom."""
     REPLAYED = auto()
     """Signed with our key, but no later than what this stream has said, or a minute old."""
+    AHEAD = auto()
+    """Signed with our key, but over a minute ahead of our clock."""
 
 
 def decode(buffer: bytes, start: int, signed_too: bool = True) -> Frame | Refusal:

@@ -7,6 +7,7 @@ off at its end does not swallow the next one.
 """
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from laglab_protocol.framing.frame import START, Frame, Refusal, decode
@@ -59,6 +60,11 @@ class Receiver:
             _by_peer(self._lost),
             _by_peer(self._late),
         )
+
+    @property
+    def refused(self) -> Mapping[Refusal, int]:
+        """As in the counters, and as it changes."""
+        return self._refused
 
     def receive(self, data: bytes, whole: bool = False) -> list[Frame]:
         """The frames that `data`, after the bytes received before, completes.
