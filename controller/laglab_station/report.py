@@ -28,3 +28,5 @@ class StationReport(Struct, frozen=True):
     """All."""
     gated: int = 0
     """Measurements that were too wild to be used."""
+    emergency_stop: bool = False
+    """Whether the robot said that somebody had stopped it for good."""

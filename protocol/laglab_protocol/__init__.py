@@ -40,6 +40,8 @@ from laglab_protocol.messages.loop import (
     message_type,
 )
 from laglab_protocol.messages.standard import (
+    MAV_SEVERITY_EMERGENCY,
+    MAV_SEVERITY_ERROR,
     MAV_SEVERITY_WARNING,
     STATION_HEARTBEAT,
     Attitude,
@@ -73,6 +75,8 @@ from laglab_protocol.tlog import TlogError, read_tlog, tlog_record
 
 __all__ = [
     "EVERY_MESSAGE",
+    "MAV_SEVERITY_EMERGENCY",
+    "MAV_SEVERITY_ERROR",
     "MAV_SEVERITY_WARNING",
     "NO_COMMAND",
     "RECALLED",

@@ -10,14 +10,17 @@ from laglab_gateway.loops.surroundings import Surroundings
 from laglab_gateway.loops.watch import Watch
 from laglab_gateway.record.recorder import Recorder
 from laglab_gateway.services import Askers, heartbeat
-from laglab_gateway.side import RobotSide, from_station
+from laglab_gateway.side import RobotSide
+from laglab_gateway.speakers import from_station
 from laglab_protocol import (
+    MAV_SEVERITY_ERROR,
     EndpointError,
     EndReason,
     Frame,
     Refusals,
     Settings,
     SettingsError,
+    Statustext,
     differences,
     refuse_other_sample_time,
 )
@@ -180,12 +183,21 @@ class Conversation:
     def _look_around(self) -> None:
         """Say what was announced, and look after those who watch."""
         if notices := self._gateway.take_notices():
+            self._show(notices)
             self._watch.tell(notices)
             self.send(self._gateway.framed(notices))
         self._watch.poll(lambda: self._gateway.state)
         self._tell_of_keys()
         for name in self._watch.take_lost():
             self._gateway.announce(f"lost the watcher {name}")
+
+    def _show(self, notices: Sequence[Statustext]) -> None:
+        """Once each, to whoever runs the gateway: what is worse than a warning."""
+        for notice in notices:
+            text = notice.text.decode(errors="replace")
+            if notice.severity <= MAV_SEVERITY_ERROR and text not in self._told:
+                self._told.add(text)
+                self._around.warn(text)
 
     def listen_for(self, done: Callable[[], bool]) -> bool:
         """Listen until `done`, or until it is time to repeat: then False."""
@@ -215,6 +227,6 @@ class Conversation:
         outcome = self._gateway.stop(EndReason.FAILED)
         self._recorder.flush()
         for _ in range(END_TRIES):
-            self.send([self._gateway.end(outcome.reason)])
+            self.send(self._gateway.farewell(outcome.reason))
             if self.listen_for(lambda: self._gateway.station_end is not None):
                 return
