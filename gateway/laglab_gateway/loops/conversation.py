@@ -34,6 +34,8 @@ END_TRIES = 5
 KNOCK_PERIOD = 0.5
 """[s]"""
 
+TAKEN_OVER = "another station has taken over"
+
 PATIENT_WITH_KEYS = 1.0
 """[s] So often we say which frames we may not take."""
 
@@ -52,7 +54,7 @@ class Conversation:
         self._watch = around.watch or Watch(gateway.services, [])
         self._heard, self._heard_tick = self.now(), 0
         self._settings: Settings | None = None
-        self._told: set[str] = set()
+        self._told = {TAKEN_OVER}
         self._askers = Askers()
         self._begun = False
         self._knocked = -math.inf
@@ -136,7 +138,8 @@ class Conversation:
             if now - self._heard < self._patience.in_force:
                 link.send(self._gateway.end(EndReason.DISPLACED), to=link.sender)
                 return [frame for frame in frames if not from_station(frame)]
-            self._warn("another station has taken over")
+            self._around.warn(TAKEN_OVER)
+            self._gateway.announce(TAKEN_OVER, MAV_SEVERITY_ERROR)
             link.send(self._gateway.end(EndReason.DISPLACED))
         link.accept_peer()
         self._heard, self._heard_tick = now, self._gateway.tick
