@@ -47,6 +47,9 @@ class Onlooker:
     def answered(self, tick: int) -> None:
         """A tick is over for the station: nobody waits for it now."""
 
+    def close(self) -> None:
+        """The run is over."""
+
 
 def run_station(
     station: Station,

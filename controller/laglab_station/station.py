@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import starmap
 
 import numpy as np
 
@@ -30,7 +31,7 @@ from laglab_station.alarms import Alarms
 from laglab_station.hearing import Came, Coming, echoes, measured, recalled
 from laglab_station.joining import Rest, observe, prior
 from laglab_station.recalling import Questions
-from laglab_station.report import StationReport
+from laglab_station.report import Calibrated, StationReport
 from laglab_station.saying import said
 from laglab_station.warned import Warnings
 
@@ -75,20 +76,17 @@ class Station:
         self._restart = Restart()
         self._first = 0
         self._control = self._controller.start()
-        self._ahead: Control | None = None
-        """What the next tick starts from, where there was time."""
+        self._ahead: Control | None = None  # what the next tick starts from, where there was time
         self._answer: list[Message] = []
         self._tick: int | None = None
         self._outcome: End | None = None
         self._closed = False
         self._measurement_delay: int | None = None
         self._times = Durations()
-        self._took: int | None = None
-        """The last answer [ns], until it is counted."""
+        self._took: int | None = None  # the last answer [ns], until it is counted
         self._alarms = Alarms()
         self._warnings = Warnings()
-        self._unjudged = False
-        """Measurements came, and nobody has looked for warnings since."""
+        self._unjudged = False  # measurements came, and nobody has looked for warnings since
 
     @property
     def outcome(self) -> End | None:
@@ -130,6 +128,7 @@ class Station:
             alarms_raised=self._alarms.raised,
             gated=self._alarms.gated(self._controller, self._control),
             emergency_stop=self._warnings.emergency_stop,
+            calibration=tuple(starmap(Calibrated, self._controller.learned(self._control))),
         )
 
     def heartbeat(self) -> list[bytes]:

@@ -82,7 +82,7 @@ class Run:
         self.folder = folder
         assert self.gateway.stderr is not None
         lines = [self.gateway.stderr.readline() for _ in range(2)]
-        self.ports = [int(line.strip().rpartition(":")[2]) for line in lines]
+        self.ports = [int(re.findall(r"udpin://127\.0\.0\.1:(\d+)", line)[0]) for line in lines]
         there = ("--endpoint", f"udpout://127.0.0.1:{self.ports[0]}", "--out", folder / "station")
         self.controller = start("controller", *options, *there)
         self.wait_until_under_way()

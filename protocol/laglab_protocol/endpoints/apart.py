@@ -4,13 +4,17 @@ The system gives a datagram to the socket that is connected to whoever sent it, 
 hears all. So strangers, however many datagrams they send, fill a queue of their own.
 """
 
+import os
 import socket
 from typing import Any
 
 
 def queue_for(peer: Any, shared: socket.socket) -> socket.socket | None:
     """A socket at the address of `shared` for what `peer` sends; None where the system refuses."""
+    if os.name != "posix":
+        return None  # on Windows the leave to share an address is one to take it over
     apart = socket.socket(shared.family, socket.SOCK_DGRAM)
+    apart.setblocking(False)
     try:
         _let_share(True, shared, apart)
         apart.bind(shared.getsockname())

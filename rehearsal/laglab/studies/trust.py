@@ -17,6 +17,10 @@ from laglab.studies.consistency import judged
 from laglab.studies.overhearing import Known, Overhearing
 from laglab.studies.workers import shared_out
 
+DEFAULT = "delayed-ekf"
+"""The filter of `lab*`, which is guarded there."""
+STOCK = ("delayed-ekf", "popf", "ekf")
+"""Compared as they are."""
 MOVED_AT = 5.0
 """[s] When somebody moves the robot by half a metre."""
 NOTICED_BY = 2.0
@@ -92,10 +96,6 @@ def stations(default: str) -> dict[str, Overrides]:
         "popf, guarded": {"estimator.kind": "popf", "estimator.guard": True},
         **{name: {"estimator.kind": name, "estimator.guard": False} for name in STOCK},
     }
-
-
-STOCK = ("delayed-ekf", "popf", "ekf")
-"""Compared as they are."""
 
 
 def fared(

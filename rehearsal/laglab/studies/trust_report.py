@@ -1,0 +1,106 @@
+"""How each station fared, as a table and as a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from rich.table import Table
+
+from laglab.results.figure import empty_figure
+from laglab.studies.trust import Fared
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FOUND = 0.05
+"""[m] An estimate nearer than that has found the robot again."""
+
+
+class Score(NamedTuple):
+    """All seeds of one condition with one station."""
+
+    runs: int
+    converged: int
+    rms: float
+    """Of the estimated position [m], over all runs that had an estimate; NaN without."""
+    nees: float
+    """The mean over the runs; NaN where nothing was claimed."""
+    alarmed: int
+    """Runs with an alarm."""
+    first_alarm: float
+    """The median tick of the first; NaN without."""
+    found: float
+    """The share of them in which the estimate was within FOUND two seconds later."""
+
+
+Scores = Mapping[tuple[str, str], Score]
+"""By condition and station."""
+
+
+def scores(fared: Sequence[Fared]) -> Scores:
+    """In the order in which they come."""
+    runs: dict[tuple[str, str], list[Fared]] = {}
+    for one in fared:
+        runs.setdefault((one.condition, one.station), []).append(one)
+    return {key: _score(ones) for key, ones in runs.items()}
+
+
+def _score(ones: Sequence[Fared]) -> Score:
+    squares = [one.rms[0] ** 2 + one.rms[1] ** 2 for one in ones if one.rms]
+    nees = [one.nees for one in ones if one.nees is not None]
+    first = [one.alarms[0] for one in ones if one.alarms]
+    late = [one.late_error for one in ones if one.late_error is not None]
+    return Score(
+        len(ones),
+        sum(one.converged for one in ones),
+        float(np.sqrt(np.mean(squares))) if squares else np.nan,
+        float(np.mean(nees)) if nees else np.nan,
+        len(first),
+        float(np.median(first)) if first else np.nan,
+        float(np.mean(np.array(late) < FOUND)) if late else np.nan,
+    )
+
+
+def trust_table(of: Scores, stations: Sequence[str], seeds: int) -> Table:
+    """Of each condition how many runs converged, a column a station; and of the first station the
+    error, the NEES and the alarms."""
+    table = Table(
+        title=f"converged, of {seeds} runs each",
+        caption=f"of {stations[0]}: root mean square error of the position \\[m];\n"
+        "NEES (3 if its claims are true); runs with an alarm; of these, how many\n"
+        f"were within {FOUND:g} m of the robot two seconds later",
+        box=None,
+        padding=(0, 1, 0, 0),
+    )
+    table.add_column("", no_wrap=True)
+    for name in (*stations, "RMS", "NEES", "alarm", "found"):
+        table.add_column(name, justify="right")
+    for condition in dict.fromkeys(condition for condition, _ in of):
+        of_these = [of[condition, station] for station in stations]
+        table.add_row(condition, *(str(score.converged) for score in of_these), *_more(of_these[0]))
+    return table
+
+
+def _more(score: Score) -> tuple[str, ...]:
+    found = "" if np.isnan(score.found) else f"{score.found:.0%}"
+    return f"{score.rms:.4f}", f"{score.nees:.3g}", str(score.alarmed), found
+
+
+def draw_trust(of: Scores, stations: Sequence[str]) -> Figure:
+    """The share of runs that converged, a field for each condition and station."""
+    conditions = list(dict.fromkeys(condition for condition, _ in of))
+    shares = np.array(
+        [[of[c, s].converged / of[c, s].runs for s in stations] for c in conditions], dtype=float
+    )
+    figure = empty_figure(3 + 1.4 * len(stations), 1.5 + 0.4 * len(conditions))
+    axes = figure.subplots()
+    axes.imshow(shares, cmap="RdYlGn", vmin=0, vmax=1, aspect="auto")
+    for (row, column), share in np.ndenumerate(shares):
+        axes.text(column, row, f"{share:.0%}", ha="center", va="center")
+    axes.set_xticks(range(len(stations)), [name.replace(", ", ",\n") for name in stations])
+    axes.set_yticks(range(len(conditions)), conditions)
+    axes.xaxis.tick_top()
+    axes.set_title("runs that end at the goal")
+    return figure

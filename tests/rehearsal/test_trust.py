@@ -1,0 +1,50 @@
+"""How far each station can be trusted."""
+
+import pytest
+
+from laglab.command import main
+from laglab.studies.trust import CONDITIONS, Fared, stations
+from laglab.studies.trust_report import scores
+
+
+def test_the_command_leaves_table_and_picture(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit) as ended:
+        main(["trust", "--seeds", "2", "--only", "moved by 0.5 m", "--only", "lab"])
+    assert ended.value.code == 0
+    page = capsys.readouterr().out
+    moved, lab = (
+        next(line for line in page.splitlines() if line.startswith(name)).split()
+        for name in ("moved by 0.5 m", "lab ")
+    )
+    assert moved[4:9] == ["2", "2", "0", "0", "0"]
+    assert lab[1:4] == ["2", "2", "2"]
+    assert (tmp_path / "trust.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("name", list(CONDITIONS))
+def test_every_condition_can_be_run_with_every_station(name):
+    for how in stations("delayed-ekf").values():
+        condition = CONDITIONS[name]
+        from laglab.scenario import load
+
+        load(condition.scenario, {**condition.overrides, **how})
+
+
+def test_the_scores_are_those_of_the_runs():
+    def one(converged, x, alarms=(), late=None):
+        return Fared("lab", "popf", converged, (x, 0.0, 0.0), 3.0, alarms, late)
+
+    runs = [one(True, 0.3), one(False, 0.4, (10, 20), 0.01), one(True, 0.0, (30,), 0.2)]
+    score = scores(runs)["lab", "popf"]
+    assert (score.runs, score.converged, score.alarmed) == (3, 2, 2)
+    assert score.rms == pytest.approx((0.25 / 3) ** 0.5)
+    assert (score.first_alarm, score.found) == (20, 0.5)
+
+
+@pytest.mark.parametrize("options", [("--only", "nonsense"), ("--estimator", "nonsense")])
+def test_what_is_not_known_is_one_line(options, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["trust", *options])
+    assert ended.value.code == 2
+    assert "'nonsense' is not one of" in capsys.readouterr().err
