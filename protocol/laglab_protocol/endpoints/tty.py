@@ -44,7 +44,7 @@ class _Tty(ABC):
         self._descriptor = descriptor
         self._begun = b""
         """The rest of what was offered, when there was room for its beginning only."""
-        self._had_room = monotonic()
+        self._full_since: float | None = None
         self._line = select.poll()
         self._line.register(descriptor, select.POLLHUP)
         os.set_blocking(descriptor, False)
@@ -83,8 +83,10 @@ class _Tty(ABC):
         self._begun = self._write(self._begun)
         rest = data if self._begun else self._write(data)
         if rest != data:
-            self._begun, self._had_room = rest, monotonic()
-        elif monotonic() - self._had_room > STALL_TIMEOUT:
+            self._begun, self._full_since = rest, None
+        elif self._full_since is None:
+            self._full_since = monotonic()
+        elif monotonic() - self._full_since > STALL_TIMEOUT:
             raise self._stalled(len(data))
 
     def _write(self, data: bytes) -> bytes:
