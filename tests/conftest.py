@@ -57,7 +57,7 @@ def listening_port() -> Callable[["subprocess.Popen[str]"], str]:
     def read(gateway: "subprocess.Popen[str]") -> str:
         assert gateway.stderr is not None
         line = gateway.stderr.readline()
-        found = re.search(r"listening on udpin://127\.0\.0\.1:(\d+)", line)
+        found = re.search(r"(?:listening on|look on at) udpin://127\.0\.0\.1:(\d+)", line)
         assert found, line
         return found[1]
 

@@ -1,5 +1,6 @@
 """What the robot's messages tell the controller; ticks are counted from the station's first."""
 
+from collections import deque
 from collections.abc import Sequence
 from math import isfinite
 from typing import NamedTuple
@@ -9,7 +10,7 @@ import numpy as np
 import laglab_protocol as protocol
 from laglab_control.estimators.interface import Applied, Measured
 from laglab_control.flight import Echo
-from laglab_protocol import Measurement
+from laglab_protocol import UNANNOUNCED, Measurement
 
 
 class Came(NamedTuple):
@@ -17,6 +18,28 @@ class Came(NamedTuple):
 
     measurements: tuple[Measurement, ...]
     recalled: tuple[protocol.Applied, ...]
+
+
+class Coming:
+    """What has come since the last tick, and the next one will tell to be whole."""
+
+    def __init__(self) -> None:
+        self._measurements: deque[Measurement] = deque(maxlen=UNANNOUNCED)
+        self._recalled: deque[protocol.Applied] = deque(maxlen=UNANNOUNCED)
+
+    def hear(self, message: Measurement | protocol.Applied) -> None:
+        """One more."""
+        if isinstance(message, Measurement):
+            self._measurements.append(message)
+        else:
+            self._recalled.append(message)
+
+    def take(self) -> Came:
+        """All of it; a repeated tick brings all anew."""
+        came = Came(tuple(self._measurements), tuple(self._recalled))
+        self._measurements.clear()
+        self._recalled.clear()
+        return came
 
 
 def measured(messages: Sequence[Measurement], first: int, tick: int) -> list[Measured]:

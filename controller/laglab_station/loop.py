@@ -13,6 +13,7 @@ from laglab_protocol import (
     FarEndGoneError,
     Frame,
     Listener,
+    Refusals,
     differences,
     refuse_other_sample_time,
 )
@@ -31,7 +32,7 @@ IN_FORCE = 1.0
 ROBOT = ROBOT_SYSTEM, ROBOT_COMPONENT
 
 PATIENT_WITH_KEYS = 1.0
-"""[s] After so long without a frame that we may take, we say how many we may not."""
+"""[s] So often we say which frames we may not take."""
 
 
 class Onlooker:
@@ -91,23 +92,24 @@ class _Loop:
         self._heard = monotonic()
         self._called = -HEARTBEAT_PERIOD
         self._compared = False
+        self._refusals = Refusals()
+        self._tell_at = self._heard + PATIENT_WITH_KEYS
 
     def say(self, frames: list[bytes]) -> None:
         self._link.send(b"".join(frames))
         self._onlooker.said(frames, self._station.tick)
 
     def introduce(self) -> None:
-        started = monotonic()
         while self._station.tick is None and not self._station.closed:
             self._call_every(HEARTBEAT_PERIOD)
             self._answer(HEARTBEAT_PERIOD)
-            if monotonic() - started > PATIENT_WITH_KEYS:
-                self._tell_of_keys()
+            self._tell_of_keys()
         if not self._compared and self._station.tick is not None:
             self._station.warn("settings", "the robot does not tell its settings")
 
     def answer_until_end(self) -> End:
         while not self._station.closed:
+            self._tell_of_keys()
             if self._answer(min(CALL_AGAIN, self._silence_timeout)):
                 continue
             silence = monotonic() - self._heard
@@ -189,6 +191,10 @@ class _Loop:
             self._onlooker.warned(text)
 
     def _tell_of_keys(self) -> None:
-        if refused := self._listener.refused:
-            self._station.warn("keys", refused)
+        """Now and then: whose frames we may not take, and how to mend that."""
+        if (now := monotonic()) < self._tell_at:
+            return
+        self._tell_at = now + PATIENT_WITH_KEYS
+        for text in self._refusals.news([self._listener]):
+            self._station.warn(text, text)
             self._look_around()

@@ -37,5 +37,7 @@ class StationReport(Struct, frozen=True):
     """All."""
     gated: int = 0
     """Measurements that were too wild to be used."""
+    emergency_stop: bool = False
+    """Whether the robot said that somebody had stopped it for good."""
     calibration: tuple[Calibrated, ...] = ()
     """What the estimator has learned of the robot at the end; most learn nothing."""

@@ -1,6 +1,5 @@
 """The station's side of the link without I/O: the robot's frames in, the answer's frames out."""
 
-from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import starmap
@@ -13,7 +12,6 @@ from laglab_protocol import (
     STATION_COMPONENT,
     STATION_HEARTBEAT,
     STATION_SYSTEM,
-    UNANNOUNCED,
     Applied,
     Command,
     Durations,
@@ -25,15 +23,17 @@ from laglab_protocol import (
     Restart,
     Sender,
     Settings,
+    Statustext,
     Tick,
     Timesync,
 )
 from laglab_station.alarms import Alarms
-from laglab_station.hearing import Came, echoes, measured, recalled
+from laglab_station.hearing import Came, Coming, echoes, measured, recalled
 from laglab_station.joining import Rest, observe, prior
 from laglab_station.recalling import Questions
 from laglab_station.report import Calibrated, StationReport
 from laglab_station.saying import said
+from laglab_station.warned import Warnings
 
 LONGEST_GAP = MEMORY
 """Ticks without a word, after which nobody knows what the robot did meanwhile."""
@@ -71,27 +71,22 @@ class Station:
         self.settings = settings or Settings(config.model.sample_time)
         self.robot_settings: Settings | None = None
         self._robot: tuple[int, int] | None = None
-        self._measurements: deque[Measurement] = deque(maxlen=UNANNOUNCED)
-        self._recalled: deque[Applied] = deque(maxlen=UNANNOUNCED)
+        self._coming = Coming()
         self._questions = Questions()
         self._restart = Restart()
         self._first = 0
         self._control = self._controller.start()
-        self._ahead: Control | None = None
-        """What the next tick starts from, if there was time to predict it already."""
+        self._ahead: Control | None = None  # what the next tick starts from, where there was time
         self._answer: list[Message] = []
         self._tick: int | None = None
         self._outcome: End | None = None
         self._closed = False
         self._measurement_delay: int | None = None
         self._times = Durations()
-        self._took: int | None = None
-        """The last answer [ns], until there is time to count it."""
+        self._took: int | None = None  # the last answer [ns], until it is counted
         self._alarms = Alarms()
-        self._warnings: dict[str, str] = {}
-        """By what they are about: of each the first."""
-        self._unjudged = False
-        """Whether measurements came at this tick, and nobody has looked for warnings since."""
+        self._warnings = Warnings()
+        self._unjudged = False  # measurements came, and nobody has looked for warnings since
 
     @property
     def outcome(self) -> End | None:
@@ -112,11 +107,11 @@ class Station:
     def warnings(self) -> tuple[str, ...]:
         """What the station has to warn of, in the order in which it was found."""
         self._look_back()
-        return tuple(self._warnings.values())
+        return self._warnings.texts
 
     def warn(self, about: str, text: str) -> None:
         """Put a warning on record, unless there is one about this already."""
-        self._warnings.setdefault(about, text)
+        self._warnings.add(about, text)
 
     def report(self) -> StationReport:
         """How the run went so far."""
@@ -132,6 +127,7 @@ class Station:
             alarms=tuple(self._alarms.told),
             alarms_raised=self._alarms.raised,
             gated=self._alarms.gated(self._controller, self._control),
+            emergency_stop=self._warnings.emergency_stop,
             calibration=tuple(starmap(Calibrated, self._controller.learned(self._control))),
         )
 
@@ -147,7 +143,7 @@ class Station:
         return self._framed(answers)
 
     def look_ahead(self) -> None:
-        """Do now, while the robot is busy with the answer, what the next one would wait for."""
+        """Do now, while the robot is busy, what the next answer would wait for."""
         regular = self._unjudged  # a measurement came, so at the next tick one may too
         self._look_back()
         under_way = self._tick is not None and self._joining is None and self._outcome is None
@@ -167,10 +163,8 @@ class Station:
         if self._robot not in (None, sender):
             return []
         match frame.message:
-            case Measurement():
-                self._measurements.append(frame.message)
-            case Applied():
-                self._recalled.append(frame.message)
+            case Measurement() | Applied():
+                self._coming.hear(frame.message)
             case Tick():
                 self._robot = sender
                 return self._hear_tick(frame.message)
@@ -178,6 +172,8 @@ class Station:
                 return self._hear_end(frame.message)
             case Settings():
                 self.robot_settings = frame.message
+            case Statustext():
+                self._warnings.hear(frame.message)
             case Timesync(tc1=0, ts1=asked) if self._clock:
                 return [Timesync(self._clock(), asked)]
         return []
@@ -194,9 +190,7 @@ class Station:
         return [] if answered else [end]
 
     def _hear_tick(self, message: Tick) -> list[Message]:
-        came = Came(tuple(self._measurements), tuple(self._recalled))
-        self._measurements.clear()
-        self._recalled.clear()
+        came = self._coming.take()
         if len(came.measurements) + len(came.recalled) != message.measurements:
             return []
         if self._outcome is None and self._is_new(message.tick):
@@ -210,9 +204,8 @@ class Station:
 
     def _is_new(self, tick: int) -> bool:
         """Whether the robot is one that we know nothing of, at its tick."""
-        if self._tick is None or tick - self._tick > LONGEST_GAP:
-            return True
-        return self._restart.shows(tick, self._tick)
+        last = self._tick
+        return last is None or tick - last > LONGEST_GAP or self._restart.shows(tick, last)
 
     def _meet(self, tick: int) -> None:
         """A robot that is new to us at this tick."""
@@ -270,7 +263,7 @@ class Station:
         return self._robot
 
     def _framed(self, messages: list[Message]) -> list[bytes]:
-        return [self._sender.frame(message) for message in messages]
+        return list(map(self._sender.frame, messages))
 
     def _step(self, tick: int, came: Came) -> None:
         """On to `tick`; over ticks that were lost on the way the last command is taken to hold,

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from msgspec.structs import replace
 
 from laglab_gateway.config import GatewayConfig
-from laglab_gateway.drive import Drive
+from laglab_gateway.drive import WHY_STOPPING, Drive, Rejection
 from laglab_gateway.link.fates import Fates
 from laglab_gateway.link.timeline import Direction
 from laglab_gateway.outcome import Outcome, reason_of
@@ -21,6 +21,7 @@ from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import RobotState, Services
 from laglab_gateway.side import RobotSide
 from laglab_protocol import (
+    MAV_SEVERITY_ERROR,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
     STATION_COMPONENT,
@@ -51,11 +52,6 @@ class RobotTick(NamedTuple):
     samples: list[Measurement]
 
 
-def from_robot(frame: Frame) -> bool:
-    """Whether the robot itself sent it."""
-    return (frame.system, frame.component) == (ROBOT_SYSTEM, ROBOT_COMPONENT)
-
-
 class Relay(RobotSide):
     """A robot at the end of a link, as its station meets it.
 
@@ -81,6 +77,7 @@ class Relay(RobotSide):
         self._heard = RobotTick(-1, [])
         self._last: Measurement | None = None
         self._in_force = -1
+        self._told_rejected: Rejection | None = None
 
     @property
     def state(self) -> RobotState:
@@ -166,7 +163,15 @@ class Relay(RobotSide):
                 frames += self._remember(message)
             elif self._follow(message, self.tick + 1, self.safety):
                 frames.append(self._to_robot.frame(self._allowed(message)))
+        self._say_why_stopping()
         return frames
+
+    def _say_why_stopping(self) -> None:
+        """Once: the robot itself only knows that nothing comes."""
+        if self._rejected is not self._told_rejected:
+            self._told_rejected = self._rejected
+            if self._rejected is not None:
+                self.announce(WHY_STOPPING[self._rejected], MAV_SEVERITY_ERROR)
 
     def _remember(self, asked: Recall) -> list[bytes]:
         """Tell what the robot's measurements have told; the robot is asked for what they have not,

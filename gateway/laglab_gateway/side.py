@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
 
 from laglab_gateway.config import GatewayConfig
-from laglab_gateway.drive import Drive, Safety, follow, rejection
+from laglab_gateway.drive import WHY_STOPPING, Drive, Rejection, Safety, follow, rejection
 from laglab_gateway.link.channel import Channel
 from laglab_gateway.link.fates import FateKind, Fates
 from laglab_gateway.link.log import LinkRow
@@ -19,13 +19,13 @@ from laglab_gateway.memory import Owed, SpeedMemory
 from laglab_gateway.outcome import Outcome, reason_of
 from laglab_gateway.record.audit import Audit, DirectionAudit
 from laglab_gateway.record.trace import TraceRow
-from laglab_gateway.services import RobotState, Services, safety_now
+from laglab_gateway.services import Asker, RobotState, Services, safety_now
+from laglab_gateway.speakers import from_station, is_for_robot
 from laglab_protocol import (
+    MAV_SEVERITY_EMERGENCY,
     MAV_SEVERITY_WARNING,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
-    STATION_COMPONENT,
-    STATION_SYSTEM,
     UNANNOUNCED,
     Applied,
     Command,
@@ -43,18 +43,9 @@ from laglab_protocol import (
     Tick,
 )
 
-
-def from_station(frame: Frame) -> bool:
-    """Whether the remote station sent it: nobody else may command."""
-    return (frame.system, frame.component) == (STATION_SYSTEM, STATION_COMPONENT)
-
-
-def _is_meant(command: Command | Recall) -> bool:
-    target = command.target_system, command.target_component
-    return target == (ROBOT_SYSTEM, ROBOT_COMPONENT)
-
-
 Cell = float | None
+
+EMERGENCY_STOP = "emergency stop: the robot stands still"
 
 
 class RobotSide(ABC):
@@ -80,7 +71,7 @@ class RobotSide(ABC):
         self.settings = config.settings
         self._config = config
         self._sender = sender or Sender(ROBOT_SYSTEM, ROBOT_COMPONENT)
-        self._notices: list[Message] = []
+        self._notices: list[Statustext] = []
         fates = fates or {}
         self._commands: Channel[Command | Recall] = Channel("command", n, Ts, fates.get("command"))
         self._measurements: Channel[Measurement | Applied] = Channel(
@@ -92,6 +83,8 @@ class RobotSide(ABC):
         self._owed = Owed()
         self._answered_through = -1
         self._drive = Drive()
+        self._rejected: Rejection | None = None
+        """Why nothing was followed since the last command that was."""
         self._go_to(0)
 
     def _go_to(self, tick: int) -> None:
@@ -144,12 +137,12 @@ class RobotSide(ABC):
         """The same messages in new frames: the station may have missed the first."""
         return [self._sender.frame(message) for message in self._batch]
 
-    def hear(self, frames: Sequence[Frame]) -> list[bytes]:
-        """Take frames from the link; returns what to say to whoever sent them."""
+    def hear(self, frames: Sequence[Frame], asker: Asker | None = None) -> list[bytes]:
+        """Take frames from the link; returns what to say to whoever sent them, the asker."""
         replies: list[Message] = []
         for frame in frames:
             if not from_station(frame) or not self._take(frame.message):
-                replies += self._answers(frame)
+                replies += self._answers(frame, asker)
         return [self._sender.frame(message) for message in replies]
 
     def _take(self, message: Message) -> bool:
@@ -157,7 +150,7 @@ class RobotSide(ABC):
         match message:
             case Heartbeat():
                 self.connected = True
-            case Command() | Recall() if not _is_meant(message):
+            case Command() | Recall() if not is_for_robot(message):
                 pass  # for another robot on the same line
             case Recall():
                 self._recalls.append(message)
@@ -184,11 +177,11 @@ class RobotSide(ABC):
         if self.outcome or (begun and self._answered_through <= end.tick <= self.tick):
             self.station_end = end
 
-    def _answers(self, frame: Frame) -> list[Message]:
+    def _answers(self, frame: Frame, asker: Asker | None) -> list[Message]:
         if from_station(frame) and isinstance(frame.message, Settings):
             self.station_settings = frame.message
             return [self.settings]
-        return self.services.answer(frame, self.state)
+        return self.services.answer(frame, self.state, asker)
 
     def _take_answer(self, command: Command) -> None:
         if len(self._estimates) + len(self._recalls) < command.estimates:
@@ -206,8 +199,9 @@ class RobotSide(ABC):
         """Follow from `tick` on a command that came across; False, and counted, when rejected."""
         if rejected := rejection(self._drive, command, safety):
             self.audit.refused[rejected] += 1
+            self._rejected = rejected if rejected in WHY_STOPPING else self._rejected
             return False
-        self._drive = follow(command, tick)
+        self._drive, self._rejected = follow(command, tick), None
         return True
 
     @property
@@ -219,11 +213,11 @@ class RobotSide(ABC):
         """These speeds, or standstill while the robot is disarmed."""
         return (v, omega) if self.services.arming.armed else (0.0, 0.0)
 
-    def announce(self, text: str) -> None:
+    def announce(self, text: str, severity: int = MAV_SEVERITY_WARNING) -> None:
         """Warn everybody who listens, in at most 50 characters, at the end of this tick."""
-        self._notices.append(Statustext(MAV_SEVERITY_WARNING, text.encode()[:50]))
+        self._notices.append(Statustext(severity, text.encode()[:50]))
 
-    def take_notices(self) -> list[Message]:
+    def take_notices(self) -> list[Statustext]:
         """What the robot did by itself since the last call: everybody is to be told."""
         notices, self._notices = self._notices, []
         return notices
@@ -260,6 +254,9 @@ class RobotSide(ABC):
 
     def _close(self) -> None:
         self.audit.unanswered += not self.answered
+        if self.services.arming.stops > self.audit.emergency_stops:
+            self.audit.emergency_stops = self.services.arming.stops
+            self.announce(EMERGENCY_STOP, MAV_SEVERITY_EMERGENCY)
         self.outcome = self.outcome or self._ending
 
     def stop(self, reason: EndReason) -> Outcome:
@@ -273,21 +270,23 @@ class RobotSide(ABC):
         sample: tuple[Cell, Cell, Cell],
         speeds: tuple[Cell, Cell],
     ) -> TraceRow:
-        x_est, y_est, theta_est = self._estimates[0].pose if self._estimates else (None,) * 3
-        v_sent, omega_sent = self._command.speeds if self._command else (None, None)
-        return TraceRow(
-            self.tick,
-            self.elapsed * self._config.sample_time,
-            *pose,
-            *sample,
-            x_est,
-            y_est,
-            theta_est,
-            v_sent,
-            omega_sent,
-            *speeds,
-        )
+        time = self.elapsed * self._config.sample_time
+        return TraceRow(self.tick, time, *pose, *sample, *self._estimate, *self._sent, *speeds)
+
+    @property
+    def _estimate(self) -> tuple[Cell, Cell, Cell]:
+        return self._estimates[0].pose if self._estimates else (None, None, None)
+
+    @property
+    def _sent(self) -> tuple[Cell, Cell]:
+        return self._command.speeds if self._command else (None, None)
 
     def end(self, reason: EndReason) -> bytes:
         """The frame that tells the station that the run is over."""
         return self._sender.frame(End(self.tick, reason))
+
+    def farewell(self, reason: EndReason) -> list[bytes]:
+        """The same, after what the station must know of the run, if it missed it."""
+        stops = self.audit.emergency_stops
+        last = [Statustext(MAV_SEVERITY_EMERGENCY, EMERGENCY_STOP.encode())] if stops else []
+        return [*self.framed(last), self.end(reason)]

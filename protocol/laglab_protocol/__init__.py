@@ -47,6 +47,8 @@ from laglab_protocol.messages.loop import (
     message_type,
 )
 from laglab_protocol.messages.standard import (
+    MAV_SEVERITY_EMERGENCY,
+    MAV_SEVERITY_ERROR,
     MAV_SEVERITY_WARNING,
     STATION_HEARTBEAT,
     Attitude,
@@ -69,6 +71,8 @@ from laglab_protocol.messages.standard import (
     SystemTime,
     Timesync,
 )
+from laglab_protocol.ration import Ration
+from laglab_protocol.refusals import Refusals
 from laglab_protocol.restart import Restart
 from laglab_protocol.settings import differences, refuse_other_sample_time
 from laglab_protocol.signing.keys import Codec, make_key, read_key, refuse_open_door
@@ -78,6 +82,8 @@ from laglab_protocol.tlog import TlogError, read_tlog, tlog_record
 
 __all__ = [
     "EVERY_MESSAGE",
+    "MAV_SEVERITY_EMERGENCY",
+    "MAV_SEVERITY_ERROR",
     "MAV_SEVERITY_WARNING",
     "NO_COMMAND",
     "RECALLED",
@@ -128,9 +134,11 @@ __all__ = [
     "PortBusyError",
     "ProtocolError",
     "Quantiles",
+    "Ration",
     "Recall",
     "Receiver",
     "Refusal",
+    "Refusals",
     "Restart",
     "Sender",
     "SerialPair",

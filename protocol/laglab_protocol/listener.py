@@ -1,6 +1,6 @@
 """Listening: bytes in, frames out, whatever they come over."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from time import monotonic
 
 from laglab_protocol.endpoints import Link
@@ -9,11 +9,6 @@ from laglab_protocol.framing.receiver import Receiver
 
 STREAM_SILENCE = 0.05
 """[s] Bytes that follow each other on a serial line, however slow, come sooner than this."""
-
-KEYS = {
-    (Refusal.UNSIGNED, Refusal.BAD_SIGNATURE): "not signed with this key",
-    (Refusal.NO_KEY,): "they are signed, and here is no key to check that with",
-}
 
 
 class Listener:
@@ -30,13 +25,13 @@ class Listener:
         self._receiver = receiver
         self._now = now
         self._last_byte = now()
-        self.idle = True
-        """Whether nothing at all came the last time."""
+        self.taken = 0
+        """Bytes that came the last time."""
 
     def listen(self, timeout: float) -> list[Frame]:
         """The frames that are whole with what arrives within `timeout` [s]."""
         data = self.link.receive(timeout)
-        self.idle = not data
+        self.taken = len(data)
         if self.link.datagrams:
             return self._receiver.receive(data, whole=True) if data else []
         now = self._now()
@@ -51,10 +46,6 @@ class Listener:
         self._receiver.receive(b"", whole=True)
 
     @property
-    def refused(self) -> str:
-        """What was not taken so far because of its signature, in a line; empty when nothing was."""
-        counts = self._receiver.counters.refused
-        for reasons, why in KEYS.items():
-            if count := sum(counts.get(reason, 0) for reason in reasons):
-                return f"{self.link.name}: {count} frames refused: {why}"
-        return ""
+    def refused(self) -> Mapping[Refusal, int]:
+        """By reason, from how many start bytes so far no frame was taken."""
+        return self._receiver.refused

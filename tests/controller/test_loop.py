@@ -19,6 +19,7 @@ from laglab_protocol import (
     open_endpoint,
 )
 from laglab_station import Onlooker, RobotSilentError, Station, run_station
+from laglab_station.loop import IN_FORCE
 
 
 @pytest.fixture
@@ -100,3 +101,35 @@ def test_a_robot_that_falls_silent_is_named_with_its_last_tick(link):
     thread.join(5)
     assert 0.2 < time.monotonic() - silent_since < 2
     assert "the robot has been silent for 0.3 s, since its tick 1" in str(results[0])
+
+
+@pytest.fixture
+def waiting():
+    """A station that waits at an address of its own, and what its run gave."""
+    results = []
+    with open_endpoint("udpin://127.0.0.1:0") as endpoint:
+        thread = threading.Thread(
+            target=run, args=(endpoint, results), kwargs={"silence_timeout": 3.0}
+        )
+        thread.start()
+        yield endpoint.name.replace("udpin", "udpout"), results
+        thread.join(5)
+
+
+@pytest.mark.parametrize("speaker", [(7, 1), (1, 1)])
+def test_a_tick_of_somebody_who_never_answers_locks_no_station(waiting, speaker):
+    """Not even in the robot's name: when the robot comes, it is met."""
+    url, results = waiting
+    with open_endpoint(url) as stranger:
+        stranger.send(Sender(*speaker).frame(Tick(5000, 0)))
+    time.sleep(IN_FORCE)
+    with open_endpoint(url) as robot:
+        knock, receiver = Sender(1, 1), Receiver()
+        until = time.monotonic() + 5
+        heard = []
+        while not any(isinstance(each.message, Command) for each in heard):
+            robot.send(knock.frame(Tick(0, 0)))
+            heard = receiver.receive(robot.receive(0.1), True)
+            assert time.monotonic() < until
+        drive(robot, Tick(1, 0), End(1, EndReason.COMPLETED))
+    assert results == [End(1, EndReason.COMPLETED)]

@@ -73,6 +73,9 @@ class SimulatedLink:
 
     def reopen(self) -> None: ...
 
+    def offer(self, data: bytes, _: object = None) -> None:
+        self.send(data)
+
     def send(self, data: bytes, _: object = None) -> None:
         for frame in self._receiver.receive(data):
             match frame.message:

@@ -55,6 +55,9 @@ class BreakingLink:
 
     def reopen(self) -> None: ...
 
+    def offer(self, data: bytes, _: object = None) -> None:
+        self.send(data)
+
     def send(self, data: bytes, _: object = None) -> None:
         for frame in self._receiver.receive(data):
             if isinstance(frame.message, Tick):

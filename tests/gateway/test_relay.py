@@ -17,7 +17,7 @@ from laglab_gateway import (
     TraceRow,
     standard_parameters,
 )
-from laglab_gateway.relay import from_robot
+from laglab_gateway.speakers import from_robot
 from laglab_protocol import (
     NO_COMMAND,
     ROBOT_COMPONENT,

@@ -2,8 +2,9 @@
 
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -11,6 +12,9 @@ from hypothesis import strategies as st
 import laglab
 from laglab_gateway import Safety
 from laglab_gateway.services import (
+    Asker,
+    Askers,
+    Pace,
     Parameter,
     RobotState,
     Services,
@@ -26,9 +30,7 @@ from laglab_protocol import (
     CommandLong,
     Frame,
     Heartbeat,
-    LocalPositionNed,
     Message,
-    Odometry,
     ParamError,
     ParamRequestList,
     ParamRequestRead,
@@ -327,23 +329,111 @@ def test_frames_are_converted(theta: float, north: float, east: float, yaw: floa
     assert math.cos(ned.yaw - yaw) == pytest.approx(1.0)
 
 
-def reports(services: Services, kind: type[Message], times: range) -> list[Message]:
-    due = [message for now in times for message in services.due(STATE, now)]
-    return [message for message in due if type(message) is kind]
+def reports(pace: Pace, number: int, times: Iterable[int]) -> int:
+    return [number for now in times for number in pace.due(now)].count(number)
 
 
-def test_telemetry_comes_as_often_as_it_should(services: Services) -> None:
-    ten_seconds = range(0, 10_000_000, 20_000)
+HEARTBEAT, POSITION, ODOMETRY = 0, 32, 331
 
-    assert len(reports(services, Heartbeat, ten_seconds)) == 10
-    assert len(reports(services, LocalPositionNed, range(20_000_000, 30_000_000, 20_000))) == 100
+
+def test_telemetry_comes_as_often_as_it_should() -> None:
+    ten_seconds = range(20_000_000, 30_000_000, 20_000)
+
+    assert reports(Pace(), HEARTBEAT, ten_seconds) == 10
+    assert reports(Pace(), POSITION, ten_seconds) == 100
+
+
+@pytest.mark.parametrize("per_second", [10, 50])
+def test_looked_for_late_it_comes_as_often_all_the_same(per_second: int) -> None:
+    """At uneven times up to a tick and a half apart."""
+    times = np.cumsum(np.random.default_rng(1).integers(5_000, 15_000, 1000)).tolist()
+    pace = Pace()
+    pace.set(ODOMETRY, 1e6 / per_second)
+
+    assert reports(pace, ODOMETRY, times) == pytest.approx(per_second * times[-1] * 1e-6, abs=2)
+
+
+def test_after_a_pause_little_is_made_up_for() -> None:
+    pace = Pace()
+    pace.due(0)
+
+    assert reports(pace, POSITION, range(10_000_000, 10_050_000, 1_000)) <= 2
 
 
 @pytest.mark.parametrize(("interval", "count"), [(500_000.0, 20), (-1.0, 0), (0.0, 100)])
 def test_the_pace_can_be_set(services: Services, interval: float, count: int) -> None:
-    assert result(services, 511, 331.0, interval) == mavlink.MAV_RESULT_ACCEPTED
+    asker = Asker(pace=Pace())
+    (ack,) = services.answer(frame(command(511, ODOMETRY, interval)), STATE, asker)
 
-    assert len(reports(services, Odometry, range(0, 10_000_000, 20_000))) == count
+    assert isinstance(ack, CommandAck)
+    assert ack.result == mavlink.MAV_RESULT_ACCEPTED
+    assert asker.pace is not None
+    assert reports(asker.pace, ODOMETRY, range(0, 10_000_000, 20_000)) == count
+
+
+def test_who_is_sent_no_telemetry_has_no_pace_to_set(services: Services) -> None:
+    assert result(services, 511, ODOMETRY, 1e6) == mavlink.MAV_RESULT_UNSUPPORTED
+
+
+# Who asks too much, and who may not
+
+
+def test_answers_are_rationed_and_commands_are_obeyed_all_the_same(services: Services) -> None:
+    services.arming.arm()
+    asker = Askers().heard_from("somewhere", 0.0)
+    told = [
+        answer
+        for _ in range(148)
+        for answer in services.answer(frame(ParamRequestList(1, 1)), STATE, asker)
+    ]
+    assert 0 < len(told) <= 64
+    assert services.answer(frame(command(STOP, 1.0)), STATE, asker) == []
+    assert services.arming.stopped
+
+
+def test_each_asker_has_a_ration_of_its_own_that_fills_up() -> None:
+    askers = Askers()
+    askers.heard_from("one", 0.0).granted([Ping(0, 0, 0, 0)] * 1000)
+
+    assert askers.heard_from("one", 0.0).room == 0
+    assert askers.heard_from("other", 0.0).room == 64
+    assert askers.heard_from("one", 0.5).room == 32
+
+
+def test_however_many_ask_only_so_many_are_known() -> None:
+    askers = Askers()
+    first = askers.heard_from("first", 0.0)
+    for number in range(1000):
+        askers.heard_from(number, 1.0)
+
+    assert len(askers.known()) == 16
+    assert askers.heard_from("first", 1.0) is first
+    late = askers.heard_from("late", 2.0)
+    assert late is askers.heard_from("later", 2.0), "all others share a ration"
+    assert askers.heard_from("much later", 20.0) is not late
+
+
+@pytest.mark.parametrize("number", [RESET, 520, 511, 512, STOP, ARM])
+def test_who_is_not_trusted_may_see_arm_and_stop(services: Services, number: int) -> None:
+    numbers = {ARM: (1.0,), STOP: (1.0,), 511: (0.0, 1e6), 512: (0.0,)}.get(number, (1.0, 1.0, 1.0))
+    asker = Asker(pace=Pace())
+    ack, *_ = services.answer(frame(command(number, *numbers)), STATE, asker, trusted=False)
+
+    assert isinstance(ack, CommandAck)
+    denied = ack.result == mavlink.MAV_RESULT_DENIED
+    assert denied is (number == RESET)
+    assert services.arming.take_reset() is None
+
+
+@pytest.mark.parametrize("name", [b"V_MAX", b"LINK_TIMEOUT"])
+def test_who_is_not_trusted_sets_nothing(services: Services, name: bytes) -> None:
+    held = services.parameters[name.decode()]
+    message = ParamSet(60.0, 1, 1, name, REAL32)
+    refusal, answer = services.answer(frame(message), STATE, trusted=False)
+
+    assert refusal == ParamError(-1, *GCS, name, mavlink.MAV_PARAM_ERROR_PERMISSION_DENIED)
+    assert isinstance(answer, ParamValue)
+    assert services.parameters[name.decode()] == held
 
 
 @pytest.mark.parametrize(

@@ -22,6 +22,8 @@ class Line:
 
     def send(self, data: bytes, to: object = None) -> None: ...
 
+    def offer(self, data: bytes, to: object = None) -> None: ...
+
     def receive(self, _: float) -> bytes:
         return self.inbox.pop(0) if self.inbox else b""
 

@@ -6,7 +6,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from laglab_protocol import Frame, Measurement, Message, Receiver, Refusal, Sender, Tick
+from laglab_protocol import (
+    Frame,
+    Measurement,
+    Message,
+    Receiver,
+    Refusal,
+    Sender,
+    Tick,
+    decode,
+)
+from laglab_protocol.framing.starts import next_start
 
 from .strategies import messages
 
@@ -130,6 +140,18 @@ def test_counters_are_a_snapshot() -> None:
 
     assert before.frames == 0
     assert receiver.counters.frames == 1
+
+
+GARBAGE = st.lists(st.sampled_from(b"\xfd\xfd\x00\x01\x1e\x84\xcb"), max_size=60).map(bytes)
+
+
+@settings(max_examples=300)
+@given(GARBAGE, st.integers(0, 60))
+def test_garbage_is_passed_over_as_if_every_start_were_read(buffer: bytes, position: int) -> None:
+    starts = [at for at in range(position, len(buffer)) if buffer[at] == 0xFD]
+    worth = [at for at in starts if decode(buffer, at) is not Refusal.UNKNOWN]
+
+    assert next_start(buffer, position) == next(iter(worth), len(buffer))
 
 
 @settings(max_examples=300)

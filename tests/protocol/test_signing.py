@@ -91,6 +91,8 @@ REJECTS = {
     "the same again": (signed(), Refusal.REPLAYED),
     "earlier": (signed(NOW - 1), Refusal.REPLAYED),
     "a new stream an hour old": (signed(NOW - 60 * MINUTE, stream=(3, 9, 9)), Refusal.REPLAYED),
+    "a clock in 2050": (signed(NOW + 10**10), Refusal.AHEAD),
+    "a new stream with a clock in 2050": (signed(NOW + 10**10, stream=(3, 9, 9)), Refusal.AHEAD),
     "unsigned": (encode(COMMAND, 200, 190, 1), Refusal.UNSIGNED),
     "unsigned, though a heartbeat": (encode(HEARTBEAT, 200, 190, 1), Refusal.UNSIGNED),
     "an unknown incompatibility flag": (flagged(0x02), Refusal.INCOMPATIBLE),
@@ -161,6 +163,13 @@ def test_streams_are_told_apart() -> None:
 @pytest.mark.parametrize(("behind", "heard"), [(MINUTE - 1, True), (MINUTE, False)])
 def test_a_new_stream_may_be_a_minute_behind(behind: int, heard: bool) -> None:
     assert Listening().hears(signed(NOW - behind)) is heard
+
+
+@pytest.mark.parametrize(("ahead", "heard"), [(MINUTE, True), (MINUTE + 1, False)])
+def test_a_stream_may_be_a_minute_ahead(ahead: int, heard: bool) -> None:
+    listening = Listening()
+    assert listening.hears(signed(NOW + ahead)) is heard
+    assert listening.hears(signed(NOW + 1, stream=(9, 9, 9))), "and locks no other out"
 
 
 def stamp_of(raw: bytes) -> int:

@@ -176,8 +176,9 @@ def test_a_displaced_station_is_told_and_can_come_back(
     start: Start, listening_port: ListeningPort, tmp_path: Path
 ) -> None:
     options = ("lab", "--pace", "realtime", "--duration", "60", "--silence", "3")
-    gateway = start("gateway", *options, *HERE, "--out", "run")
-    link = there(listening_port(gateway))
+    watch = ("--watch", "udpin://127.0.0.1:0")
+    gateway = start("gateway", *options, *HERE, *watch, "--out", "run")
+    link, watched = (there(listening_port(gateway)) for _ in range(2))
     first = start("controller", *options, *link, "--out", "first")
     wait_for(lambda: rows(tmp_path / "run") > 50)
 
@@ -187,13 +188,13 @@ def test_a_displaced_station_is_told_and_can_come_back(
     assert "another station has the robot: calling until it lets go" in said[1]
 
     first.send_signal(signal.SIGSTOP)
-    wait_for(
-        lambda: (
-            rows(tmp_path / "second") > 0 or (tmp_path / "second/robot.tlog").stat().st_size > 2000
-        )
-    )
+    with open_endpoint(watched[1]) as watcher:
+        watcher.send(Sender(255, 190).frame(HEARTBEAT))
+        wait_for(lambda: (tmp_path / "second/robot.tlog").stat().st_size > 2000)
+        seen = b"".join(iter(lambda: watcher.receive(0.0), b""))
     first.send_signal(signal.SIGCONT)
     assert "another station has taken over" in ended(first, 4)
+    assert b"another station has taken over" in seen
 
     second.send_signal(signal.SIGSTOP)
     third = start("controller", *options, *link, "--out", "third")
@@ -207,6 +208,7 @@ def test_a_displaced_station_is_told_and_can_come_back(
     ended(third, 130)
     assert "warning: another station has taken over" in ended(gateway, 130)
     second.kill()
+    assert "the robot says: another station has taken over" in second.communicate()[1]
 
 
 def test_an_end_ends_no_gateway_that_waits_and_no_run_that_it_is_not_of(

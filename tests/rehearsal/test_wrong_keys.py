@@ -59,8 +59,8 @@ def test_what_is_no_key_is_told_before_anything_runs(
     ("listens", "calls", "why"),
     [
         (("--key", "ours"), ("--key", "theirs"), "not signed with this key"),
-        (("--key", "ours"), (), "not signed with this key"),
-        ((), ("--key", "theirs"), "they are signed, and here is no key"),
+        (("--key", "ours"), (), "not signed: give the sender the same --key"),
+        ((), ("--key", "theirs"), "signed, and there is no key here"),
     ],
 )
 @pytest.mark.parametrize("side", ["gateway", "controller"])
@@ -76,7 +76,7 @@ def test_who_listens_soon_names_a_caller_with_another_key(
     other = "controller" if side == "gateway" else "gateway"
     caller = start(other, "fig6", "--endpoint", f"udpout://{here[1]}", *calls)
     warned = listener.stderr.readline()
-    assert re.match(rf"warning: \S+: \d+ frames refused: {why}", warned), warned
+    assert re.match(rf"warning: \S+: frames refused: {why}", warned), warned
     for each in (caller, listener):
         each.send_signal(signal.SIGINT)
         each.communicate(timeout=20)

@@ -5,17 +5,22 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 
 from laglab_gateway.errors import StationSilentError
+from laglab_gateway.loops.datagrams import datagrams
 from laglab_gateway.loops.surroundings import Surroundings
 from laglab_gateway.loops.watch import Watch
 from laglab_gateway.record.recorder import Recorder
-from laglab_gateway.services import heartbeat
-from laglab_gateway.side import RobotSide, from_station
+from laglab_gateway.services import Askers, heartbeat
+from laglab_gateway.side import RobotSide
+from laglab_gateway.speakers import from_station
 from laglab_protocol import (
+    MAV_SEVERITY_ERROR,
     EndpointError,
     EndReason,
     Frame,
+    Refusals,
     Settings,
     SettingsError,
+    Statustext,
     differences,
     refuse_other_sample_time,
 )
@@ -26,14 +31,13 @@ TIMESYNC_TICKS = 10
 END_TRIES = 5
 """A lost END only costs the station its silence timeout, so a few tries are enough."""
 
-LARGEST_DATAGRAM = 1200
-"""[bytes] Every path carries so many in one piece, and no answer is worth more than a piece."""
-
 KNOCK_PERIOD = 0.5
 """[s]"""
 
+TAKEN_OVER = "another station has taken over"
+
 PATIENT_WITH_KEYS = 1.0
-"""[s] After so long without a frame that we may take, we say how many we may not."""
+"""[s] So often we say which frames we may not take."""
 
 
 class Conversation:
@@ -50,9 +54,12 @@ class Conversation:
         self._watch = around.watch or Watch(gateway.services, [])
         self._heard, self._heard_tick = self.now(), 0
         self._settings: Settings | None = None
-        self._told: set[str] = set()
+        self._told = {TAKEN_OVER}
+        self._askers = Askers()
         self._begun = False
         self._knocked = -math.inf
+        self._refusals = Refusals()
+        self._tell_at = self.now() + PATIENT_WITH_KEYS
 
     @contextmanager
     def run(self) -> Iterator[None]:
@@ -79,8 +86,7 @@ class Conversation:
             self.listen(self._patience.repeat_after)
             self._recorder.flush()
             waited = self.now() - started
-            if waited > PATIENT_WITH_KEYS:
-                self._tell_of_keys()
+            self._tell_of_keys()
             if self._patience.connect is not None and waited > self._patience.connect:
                 raise StationSilentError(None, waited)
         self._begun = True
@@ -117,7 +123,8 @@ class Conversation:
         if frames and any(from_station(frame) for frame in frames):
             frames = self._of_the_station_in_force(frames)
         if frames:
-            replies = self._gateway.hear(frames)
+            asker = self._askers.heard_from(self._link.sender, self.now())
+            replies = self._gateway.hear(frames, asker)
             self._recorder.frames(self._gateway.time_us, [frame.raw for frame in frames])
             if replies:
                 self._reply(replies)
@@ -131,7 +138,8 @@ class Conversation:
             if now - self._heard < self._patience.in_force:
                 link.send(self._gateway.end(EndReason.DISPLACED), to=link.sender)
                 return [frame for frame in frames if not from_station(frame)]
-            self._warn("another station has taken over")
+            self._around.warn(TAKEN_OVER)
+            self._gateway.announce(TAKEN_OVER, MAV_SEVERITY_ERROR)
             link.send(self._gateway.end(EndReason.DISPLACED))
         link.accept_peer()
         self._heard, self._heard_tick = now, self._gateway.tick
@@ -140,8 +148,8 @@ class Conversation:
     def _reply(self, frames: list[bytes]) -> None:
         """To whoever asked; what does not get there is the asker's loss, not the run's."""
         try:
-            for datagram in _datagrams(frames):
-                self._link.send(datagram, to=self._link.sender)
+            for datagram in datagrams(frames):
+                self._link.offer(datagram, to=self._link.sender)
         except EndpointError as error:
             self._warn(f"an answer was not sent: {error}")
         self._recorder.frames(self._gateway.time_us, frames)
@@ -168,18 +176,31 @@ class Conversation:
             self._gateway.announce(text)
 
     def _tell_of_keys(self) -> None:
-        if (refused := self._listener.refused) and "keys" not in self._told:
-            self._told.add("keys")
-            self._around.warn(refused)
+        """Now and then: whose frames we may not take, and how to mend that."""
+        if (now := self.now()) < self._tell_at:
+            return
+        self._tell_at = now + PATIENT_WITH_KEYS
+        for text in self._refusals.news([self._listener, *self._watch.listeners]):
+            self._around.warn(text)
 
     def _look_around(self) -> None:
         """Say what was announced, and look after those who watch."""
         if notices := self._gateway.take_notices():
+            self._show(notices)
             self._watch.tell(notices)
             self.send(self._gateway.framed(notices))
         self._watch.poll(lambda: self._gateway.state)
+        self._tell_of_keys()
         for name in self._watch.take_lost():
             self._gateway.announce(f"lost the watcher {name}")
+
+    def _show(self, notices: Sequence[Statustext]) -> None:
+        """Once each, to whoever runs the gateway: what is worse than a warning."""
+        for notice in notices:
+            text = notice.text.decode(errors="replace")
+            if notice.severity <= MAV_SEVERITY_ERROR and text not in self._told:
+                self._told.add(text)
+                self._around.warn(text)
 
     def listen_for(self, done: Callable[[], bool]) -> bool:
         """Listen until `done`, or until it is time to repeat: then False."""
@@ -209,17 +230,6 @@ class Conversation:
         outcome = self._gateway.stop(EndReason.FAILED)
         self._recorder.flush()
         for _ in range(END_TRIES):
-            self.send([self._gateway.end(outcome.reason)])
+            self.send(self._gateway.farewell(outcome.reason))
             if self.listen_for(lambda: self._gateway.station_end is not None):
                 return
-
-
-def _datagrams(frames: Sequence[bytes]) -> Iterator[bytes]:
-    """The frames in as few pieces as every path carries."""
-    piece = b""
-    for frame in frames:
-        if piece and len(piece) + len(frame) > LARGEST_DATAGRAM:
-            yield piece
-            piece = b""
-        piece += frame
-    yield piece

@@ -8,7 +8,8 @@ from time import monotonic
 from laglab_gateway.errors import PlantSilentError
 from laglab_gateway.loops.conversation import END_TRIES, Conversation
 from laglab_gateway.loops.surroundings import Patience, Served, Surroundings
-from laglab_gateway.relay import Relay, from_robot
+from laglab_gateway.relay import Relay
+from laglab_gateway.speakers import from_robot
 from laglab_protocol import (
     Endpoint,
     EndpointError,

@@ -55,6 +55,7 @@ class LinkReport(Struct, frozen=True):
     stops: int
     """How many there were."""
     timesync: ClockReport | None = None
+    emergency_stops: int = 0
 
 
 @dataclass
@@ -98,6 +99,7 @@ class Audit:
     unanswered: int = 0
     stops: int = 0
     first_stops: list[int] = field(default_factory=list)
+    emergency_stops: int = 0
 
     def stopped(self, tick: int) -> None:
         """The failsafe began to stop the robot at `tick`."""
@@ -119,4 +121,5 @@ class Audit:
             failsafe_stops=list(self.first_stops),
             stops=self.stops,
             timesync=clocks,
+            emergency_stops=self.emergency_stops,
         )

@@ -1,6 +1,8 @@
 """What a ground station expects of a rover: heartbeat, parameters, commands, telemetry."""
 
+from laglab_gateway.services.asker import Asker, Askers
 from laglab_gateway.services.commands import Commands
+from laglab_gateway.services.pace import Pace
 from laglab_gateway.services.parameters import (
     Parameter,
     Parameters,
@@ -14,7 +16,10 @@ from laglab_gateway.services.timesync import Timesyncing
 
 __all__ = [
     "Arming",
+    "Asker",
+    "Askers",
     "Commands",
+    "Pace",
     "Parameter",
     "Parameters",
     "RobotState",

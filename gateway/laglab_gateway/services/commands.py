@@ -5,7 +5,9 @@ from collections.abc import Callable
 
 from msgspec.structs import astuple
 
+from laglab_gateway.services.pace import Pace
 from laglab_gateway.services.state import Arming
+from laglab_gateway.services.telemetry import REPORTS
 from laglab_protocol import CommandAck, CommandInt, CommandLong, Frame, Message
 from laglab_protocol.dialect.generated import laglab as mavlink
 
@@ -20,38 +22,54 @@ Result = tuple[int, list[Message]]
 """MAV_RESULT, and what to say after the acknowledgement."""
 
 
+SEE_ARM_AND_STOP = {
+    mavlink.MAV_CMD_COMPONENT_ARM_DISARM,
+    mavlink.MAV_CMD_DO_FLIGHTTERMINATION,
+    mavlink.MAV_CMD_REQUEST_MESSAGE,
+    mavlink.MAV_CMD_SET_MESSAGE_INTERVAL,
+    mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES,
+}
+"""What those may who need no key where others have one."""
+
+
 class Commands:
-    """Carries commands out. `report(id)` gives the message with this id, None if it has none;
-    `pace(id, interval_us)` sends it that often, False if it cannot."""
+    """Carries commands out. `report(id)` gives the message with this id, None if it has none."""
 
     def __init__(
         self,
         arming: Arming,
         report: Callable[[int], Message | None],
-        pace: Callable[[int, float], bool],
     ) -> None:
         self._arming = arming
         self._report = report
-        self._pace = pace
         self._handlers: dict[int, Callable[[Numbers], Result]] = {
             mavlink.MAV_CMD_COMPONENT_ARM_DISARM: self._arm_or_disarm,
             mavlink.MAV_CMD_DO_FLIGHTTERMINATION: self._emergency_stop,
             mavlink.MAV_CMD_LAGLAB_RESET_POSE: self._reset_pose,
             mavlink.MAV_CMD_REQUEST_MESSAGE: self._request_message,
-            mavlink.MAV_CMD_SET_MESSAGE_INTERVAL: self._set_interval,
             mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: self._capabilities,
         }
 
-    def answer(self, frame: Frame) -> list[Message]:
-        """The acknowledgement, and what the command asked to be told."""
+    def answer(self, frame: Frame, pace: Pace | None, trusted: bool) -> list[Message]:
+        """The acknowledgement, and what the command asked to be told. `pace` is the asker's, who
+        may be denied what only the `trusted` may."""
         message = frame.message
         if not isinstance(message, CommandLong | CommandInt):
             return []
         numbers = astuple(message)[: 7 if isinstance(message, CommandLong) else 4]
-        handler = self._handlers.get(message.command)
-        result, more = handler(numbers) if handler else (UNSUPPORTED, [])
+        result, more = self._carry_out(message.command, numbers, pace, trusted)
         ack = CommandAck(message.command, result, 0, 0, frame.system, frame.component)
         return [ack, *more]
+
+    def _carry_out(
+        self, command: int, numbers: Numbers, pace: Pace | None, trusted: bool
+    ) -> Result:
+        if command == mavlink.MAV_CMD_SET_MESSAGE_INTERVAL:
+            return _set_interval(numbers, pace), []
+        handler = self._handlers.get(command)
+        if handler is None:
+            return UNSUPPORTED, []
+        return handler(numbers) if trusted or command in SEE_ARM_AND_STOP else (DENIED, [])
 
     def _arm_or_disarm(self, numbers: Numbers) -> Result:
         if numbers[0] == 1.0:
@@ -77,15 +95,19 @@ class Commands:
         message = self._report(_message_id(numbers[0]))
         return (UNSUPPORTED, []) if message is None else (ACCEPTED, [message])
 
-    def _set_interval(self, numbers: Numbers) -> Result:
-        interval = numbers[1]
-        if not (math.isfinite(interval) and interval >= -1):
-            return DENIED, []
-        return (ACCEPTED if self._pace(_message_id(numbers[0]), interval) else UNSUPPORTED), []
-
     def _capabilities(self, numbers: Numbers) -> Result:
         del numbers
         return self._request_message((float(mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION),))
+
+
+def _set_interval(numbers: Numbers, pace: Pace | None) -> int:
+    number, interval = _message_id(numbers[0]), numbers[1]
+    if not (math.isfinite(interval) and interval >= -1):
+        return DENIED
+    if pace is None or number not in REPORTS:
+        return UNSUPPORTED
+    pace.set(number, interval)
+    return ACCEPTED
 
 
 def _message_id(number: float) -> int:

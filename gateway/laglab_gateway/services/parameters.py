@@ -22,6 +22,7 @@ from laglab_protocol import (
 from laglab_protocol.dialect.generated import laglab as mavlink
 
 NAME_SIZE = 16
+NOT_PERMITTED: int = mavlink.MAV_PARAM_ERROR_PERMISSION_DENIED
 BY_NAME = -1
 """The index in a request that names its parameter."""
 
@@ -57,15 +58,15 @@ class Parameters:
     def __getitem__(self, name: str) -> float:
         return self._table[name].value
 
-    def answer(self, frame: Frame) -> list[Message]:
-        """What to say to a request; nothing to anything else."""
+    def answer(self, frame: Frame, trusted: bool = True) -> list[Message]:
+        """What to say to a request; nothing to anything else. Only the `trusted` may set."""
         match frame.message:
             case ParamRequestList():
                 return [self._value(name) for name in self._table]
             case ParamRequestRead(index, _, _, name):
                 return self._read(self._find(index, name), frame, index, name)
             case ParamSet(value, _, _, name):
-                return self._set(self._find(BY_NAME, name), frame, value)
+                return self._set(self._find(BY_NAME, name), frame, value, trusted)
         return []
 
     def _find(self, index: int, name: bytes) -> str | None:
@@ -80,12 +81,12 @@ class Parameters:
             return [_error(frame, index, name, mavlink.MAV_PARAM_ERROR_DOES_NOT_EXIST)]
         return [self._value(found)]
 
-    def _set(self, found: str | None, frame: Frame, value: float) -> list[Message]:
+    def _set(self, found: str | None, frame: Frame, value: float, trusted: bool) -> list[Message]:
         """Answered with the value that holds now, so that a refusal shows in old clients too."""
         name = frame.message.param_id  # type: ignore[attr-defined]
         if found is None:
             return [_error(frame, BY_NAME, name, mavlink.MAV_PARAM_ERROR_DOES_NOT_EXIST)]
-        refused = self._table[found].refuses(value)
+        refused = self._table[found].refuses(value) if trusted else NOT_PERMITTED
         if refused is not None:
             return [_error(frame, BY_NAME, name, refused), self._value(found)]
         self._table[found] = replace(self._table[found], value=value)

@@ -27,6 +27,8 @@ class Arming:
         self.armed = armed
         self._placeable = placeable
         self.stopped = False
+        self.stops = 0
+        """Emergency stops so far."""
         self.reset_to: Pose | None = None
 
     def arm(self) -> bool:
@@ -41,6 +43,7 @@ class Arming:
     def stop(self) -> None:
         """Stand still at once, and stay so."""
         self.armed = False
+        self.stops += not self.stopped
         self.stopped = True
 
     def reset(self, pose: Pose) -> bool:

@@ -39,6 +39,12 @@ class Link(Protocol):
         FarEndStalledError where the link can tell.
         """
 
+    def offer(self, data: bytes, to: Address | None = None) -> None:
+        """Send whole `data` without waiting, or nothing where there is no room for it now.
+
+        Raises FarEndStalledError when there has been no room for long.
+        """
+
     def receive(self, timeout: float) -> bytes:
         """What arrived within `timeout` seconds, b"" when nothing did."""
 

@@ -7,6 +7,7 @@ import stat
 import tty
 from abc import ABC, abstractmethod
 from pathlib import Path
+from time import monotonic
 from types import TracebackType
 from typing import Self
 
@@ -21,7 +22,8 @@ from laglab_protocol.errors import (
     PortBusyError,
 )
 
-READ_AT_MOST = 4096
+READ_AT_MOST = 1024
+"""Bytes at a time: whoever reads looks at its clock in between."""
 STALL_TIMEOUT = 1.0
 """Seconds that a full queue may stay full before the far end counts as stalled."""
 
@@ -40,6 +42,9 @@ class _Tty(ABC):
 
     def _hold(self, descriptor: int) -> None:
         self._descriptor = descriptor
+        self._begun = b""
+        """The rest of what was offered, when there was room for its beginning only."""
+        self._full_since: float | None = None
         self._line = select.poll()
         self._line.register(descriptor, select.POLLHUP)
         os.set_blocking(descriptor, False)
@@ -51,7 +56,7 @@ class _Tty(ABC):
         return
 
     def receive(self, timeout: float) -> bytes:
-        return first_bytes(self._read, self._descriptor, timeout)
+        return first_bytes(self._read, self.fileno, timeout)
 
     def _read(self) -> bytes | None:
         try:
@@ -66,20 +71,38 @@ class _Tty(ABC):
 
     def send(self, data: bytes, to: Address | None = None) -> None:
         del to  # there is only one far end
+        data, self._begun = self._begun + data, b""
         while data:
-            try:
-                data = data[os.write(self._descriptor, data) :]
-            except BlockingIOError:
-                self._await_room(len(data))
-            except OSError as error:
-                raise self._gone(error.strerror) from error
+            rest = self._write(data)
+            if rest == data and not writable(self._descriptor, STALL_TIMEOUT):
+                raise self._stalled(len(data))
+            data = rest
 
-    def _await_room(self, waiting: int) -> None:
-        if not writable(self._descriptor, STALL_TIMEOUT):
-            raise FarEndStalledError(
-                f"{self.name}: the far end has stopped reading, {waiting} bytes cannot be sent: "
-                "see whether the program there still runs"
-            )
+    def offer(self, data: bytes, to: Address | None = None) -> None:
+        del to
+        self._begun = self._write(self._begun)
+        rest = data if self._begun else self._write(data)
+        if rest != data:
+            self._begun, self._full_since = rest, None
+        elif self._full_since is None:
+            self._full_since = monotonic()
+        elif monotonic() - self._full_since > STALL_TIMEOUT:
+            raise self._stalled(len(data))
+
+    def _write(self, data: bytes) -> bytes:
+        """What there was no room for."""
+        try:
+            return data[os.write(self._descriptor, data) :] if data else data
+        except BlockingIOError:
+            return data
+        except OSError as error:
+            raise self._gone(error.strerror) from error
+
+    def _stalled(self, waiting: int) -> FarEndStalledError:
+        return FarEndStalledError(
+            f"{self.name}: the far end has stopped reading, {waiting} bytes cannot be sent: "
+            "see whether the program there still runs"
+        )
 
     def _gone(self, reason: str | None) -> FarEndGoneError:
         return FarEndGoneError(

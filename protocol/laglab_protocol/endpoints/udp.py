@@ -1,18 +1,31 @@
 """UDP, both ways round: `udpin` waits for a peer, `udpout` goes to one."""
 
 import ipaddress
+import selectors
 import socket
 from abc import ABC, abstractmethod
+from time import monotonic
 from types import TracebackType
 from typing import Any, Self
 
+from laglab_protocol.endpoints.apart import queue_for
 from laglab_protocol.endpoints.interface import Address
 from laglab_protocol.endpoints.waiting import first_bytes
 from laglab_protocol.errors import EndpointError, NoSuchPortError, PortBusyError
+from laglab_protocol.ration import Ration
 
 LARGEST_DATAGRAM = 65535
 NOBODY_THERE = (ConnectionRefusedError, ConnectionResetError)
 """As Linux and as Windows say it, on the next call, of a datagram that found nobody."""
+
+STRANGERS_DATAGRAM = 2048
+"""Bytes of a stranger's that are read, more than a path carries in one piece; the rest is not."""
+
+STRANGERS_A_SECOND = 8192
+"""Bytes of strangers' that are read while there is a peer: a ground station says a tenth."""
+
+SHORTEST_COUNTED = 64
+"""A datagram costs as much as so many bytes, however short it is."""
 
 
 class _Udp(ABC):
@@ -43,11 +56,17 @@ class _Udp(ABC):
     def accept_peer(self) -> None:
         return
 
+    @abstractmethod
+    def send(self, data: bytes, to: Address | None = None) -> None: ...
+
+    def offer(self, data: bytes, to: Address | None = None) -> None:
+        self.send(data, to)  # a datagram does not wait for whoever reads it
+
     def reopen(self) -> None:
         return  # a socket outlives whoever is at the far end
 
     def receive(self, timeout: float) -> bytes:
-        return first_bytes(self._read, self._socket.fileno(), timeout)
+        return first_bytes(self._read, self._socket.fileno, timeout)
 
     @abstractmethod
     def _read(self) -> bytes | None:
@@ -66,7 +85,11 @@ class _Udp(ABC):
 
 
 class UdpIn(_Udp):
-    """Bound to an address; sends to the peer last accepted (see Endpoint.accept_peer)."""
+    """Bound to an address; sends to the peer last accepted (see Endpoint.accept_peer).
+
+    The peer has a queue of its own, and is heard before strangers, who are rationed. Where the
+    system gives it none, everybody is heard as they come.
+    """
 
     def __init__(self, host: str, port: int) -> None:
         super().__init__("udpin", host, port)
@@ -76,6 +99,28 @@ class UdpIn(_Udp):
             self._socket.close()
             raise _cannot("bind", self.name, error) from error
         self._address = self._socket.getsockname()
+        self._apart: socket.socket | None = None
+        self._strangers = Ration(STRANGERS_A_SECOND, STRANGERS_DATAGRAM)
+        self._ready = selectors.DefaultSelector()
+        self._watched: set[socket.socket] = set()
+
+    def fileno(self) -> int:
+        """Of all the queues that may be read now."""
+        if self._apart is None:
+            return self._socket.fileno()
+        self._watch({self._apart, *([self._socket] if self._may_hear_strangers else [])})
+        return self._ready.fileno()
+
+    def _watch(self, queues: set[socket.socket]) -> None:
+        for gone in self._watched - queues:
+            self._ready.unregister(gone)
+        for new in queues - self._watched:
+            self._ready.register(new, selectors.EVENT_READ)
+        self._watched = queues
+
+    @property
+    def _may_hear_strangers(self) -> bool:
+        return self._apart is None or self._strangers.left(monotonic()) > 0
 
     def send(self, data: bytes, to: Address | None = None) -> None:
         address: Any = to or self.peer
@@ -88,15 +133,40 @@ class UdpIn(_Udp):
                 where = f"{address[0]}:{address[1]}"
                 raise _cannot(f"send to {where} from", self.name, error) from error
 
+    def receive(self, timeout: float) -> bytes:
+        return first_bytes(self._read, self.fileno, timeout)
+
     def _read(self) -> bytes | None:
-        try:
-            data, self.sender = self._socket.recvfrom(LARGEST_DATAGRAM)
-        except (BlockingIOError, *NOBODY_THERE):
-            return None
+        data = self._read_from(self._apart, LARGEST_DATAGRAM) if self._apart else None
+        if data is None and self._may_hear_strangers:
+            data = self._read_from(self._socket, STRANGERS_DATAGRAM)
+            if data is not None and self.sender != self.peer:
+                self._strangers.take(max(len(data), SHORTEST_COUNTED))
         return data
 
+    def _read_from(self, queue: socket.socket, size: int) -> bytes | None:
+        try:
+            data, self.sender = queue.recvfrom(LARGEST_DATAGRAM)
+        except (BlockingIOError, *NOBODY_THERE):
+            return None
+        return data[:size]
+
     def accept_peer(self) -> None:
-        self.peer = self.sender
+        if self.sender != self.peer:
+            self._end_queue()
+            self.peer = self.sender
+            self._apart = queue_for(self.peer, self._socket)
+
+    def _end_queue(self) -> None:
+        self._watch(set())
+        if self._apart is not None:
+            self._apart.close()
+            self._apart = None
+
+    def close(self) -> None:
+        self._end_queue()
+        self._ready.close()
+        super().close()
 
 
 class UdpOut(_Udp):

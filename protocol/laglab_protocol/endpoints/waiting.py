@@ -12,16 +12,18 @@ so the beginning of a wait is polled, and its end, in order to be in time for th
 _yield: Callable[[], None] = getattr(os, "sched_yield", lambda: sleep(0.0))
 
 
-def first_bytes(read: Callable[[], bytes | None], descriptor: int, timeout: float) -> bytes:
+def first_bytes(
+    read: Callable[[], bytes | None], descriptor: Callable[[], int], timeout: float
+) -> bytes:
     """What `read` gives within `timeout` seconds, asked once at least; it gives None for not yet.
 
-    `descriptor` is readable when it would give more.
+    `descriptor()` is readable when it would give more; asked for before each wait.
     """
     now = monotonic()
     deadline = now + timeout
     data = _poll(read, min(now + POLLED, deadline))
     while data is None and (left := deadline - monotonic()) > 0:
-        select.select([descriptor], [], [], max(left - POLLED, 0.0))
+        select.select([descriptor()], [], [], max(left - POLLED, 0.0))
         data = _poll(read, min(monotonic() + POLLED, deadline))
     return data or b""
 

@@ -39,6 +39,11 @@ class Frame(Struct, frozen=True, gc=False):
     sequence: int
     raw: bytes
 
+    @property
+    def signed(self) -> bool:
+        """Whether it carries a signature; if it was delivered, one of the key's holders'."""
+        return bool(self.raw[2] & SIGNED)
+
 
 class Refusal(Enum):
     """Why no frame is delivered from a start byte."""
@@ -59,6 +64,10 @@ class Refusal(Enum):
     """Signed, and we have no key to tell by whom."""
     REPLAYED = auto()
     """Signed with our key, but no later than what this stream has said, or a minute old."""
+    AHEAD = auto()
+    """Signed with our key, but over a minute ahead of our clock."""
+    NESTED = auto()
+    """Intact, but inside a frame that was whole and was refused: perhaps its payload."""
 
 
 def decode(buffer: bytes, start: int, signed_too: bool = True) -> Frame | Refusal:
@@ -91,3 +100,20 @@ def decode(buffer: bytes, start: int, signed_too: bool = True) -> Frame | Refusa
     else:
         fields = layout.unpack(buffer[body:end].ljust(layout.size, b"\0"), 0)
     return Frame(layout.type(*fields), system, component, sequence, buffer[start:stop])
+
+
+def extent(buffer: bytes, start: int) -> int:
+    """Where the frame ends that its header claims at `start`, of which all is there."""
+    signature = SIGNATURE_SIZE if buffer[start + 2] & SIGNED else 0
+    return start + HEADER_SIZE + buffer[start + 1] + CRC_SIZE + signature
+
+
+def is_intact(buffer: bytes, start: int) -> bool:
+    """Whether the CRC is right of a frame that was refused for something else."""
+    layout = LAYOUT_OF_ID.get(int.from_bytes(buffer[start + 7 : start + 10], "little"))
+    end = start + HEADER_SIZE + buffer[start + 1]
+    if layout is None:
+        return False
+    return bool(
+        _crc(buffer[start + 1 : end] + layout.crc_extra) == buffer[end] | buffer[end + 1] << 8
+    )

@@ -2,14 +2,17 @@
 
 Whatever is no intact frame is counted and passed over: no bytes raise, and none that are not
 verified change anything but those counts. After a false start the search resumes one byte later,
-so every intact frame is found, whatever stands around it; a datagram is a unit, so what is cut
-off at its end does not swallow the next one.
+so every intact frame is found, whatever stands around it, but not inside another one (`nested`);
+a datagram is a unit, so what is cut off at its end does not swallow the next one.
 """
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from laglab_protocol.framing.frame import START, Frame, Refusal, decode
+from laglab_protocol.framing.nested import frames_within, outer_end, was_whole
+from laglab_protocol.framing.starts import next_start
 from laglab_protocol.signing.signature import Verifier
 
 Peer = tuple[int, int]
@@ -30,6 +33,8 @@ class Counters:
     """Gaps in the sequence numbers. A frame up to 128 behind is late or repeated: not a gap."""
     late: dict[Peer, int] = field(default_factory=dict)
     """Frames that came after their successors, or twice."""
+    nested: int = 0
+    """Frames delivered although they stood inside what claimed to be one, and was refused."""
 
 
 class Receiver:
@@ -38,7 +43,13 @@ class Receiver:
     With a verifier only what it lets pass is delivered; without one, only what is not signed.
     """
 
-    def __init__(self, verifier: Verifier | None = None) -> None:
+    def __init__(self, verifier: Verifier | None = None, nested: bool | None = None) -> None:
+        """`nested`: whether a frame inside another that was whole and was refused is delivered all
+        the same; by default where there is a key, for then it is its holder's own."""
+        self._nested_too = verifier is not None if nested is None else nested
+        self._nested = 0
+        self._aligned = True
+        """Whether what is kept stands right behind a frame."""
         self._verifier = verifier
         self._rest = b""
         self._frames = 0
@@ -57,7 +68,13 @@ class Receiver:
             dict(self._refused),
             _by_peer(self._lost),
             _by_peer(self._late),
+            self._nested,
         )
+
+    @property
+    def refused(self) -> Mapping[Refusal, int]:
+        """As in the counters, and as it changes."""
+        return self._refused
 
     def receive(self, data: bytes, whole: bool = False) -> list[Frame]:
         """The frames that `data`, after the bytes received before, completes.
@@ -66,7 +83,19 @@ class Receiver:
         longer than a frame takes; an unfinished frame is given up, and what its start byte hid is
         found. Otherwise at most one unfinished frame is kept: under 300 bytes.
         """
-        buffer = self._rest + data if self._rest else data
+        frames = self._scan(self._rest + data if self._rest else data)
+        while whole and self._rest:
+            # Of what was none only the start byte is given up: there may be frames behind it.
+            self._refused[Refusal.INCOMPLETE] += 1
+            self._noise += 1
+            frames += self._scan(self._rest[1:], aligned=False, within=len(self._rest) - 1)
+        self._aligned = self._aligned or whole
+        return frames
+
+    def _scan(self, buffer: bytes, aligned: bool | None = None, within: int = 0) -> list[Frame]:
+        """The frames in the buffer; what is unfinished is kept. What stands before `within` stands
+        inside a frame that was refused."""
+        boundary = 0 if (self._aligned if aligned is None else aligned) else -1
         self._rest = b""
         verifier, expected = self._verifier, self._expected
         signed_too = verifier is not None
@@ -84,33 +113,39 @@ class Receiver:
                 else:
                     self._out_of_sequence(peer, sequence)
                 frames.append(found)
-                position += len(found.raw)
+                position = boundary = position + len(found.raw)
+                self._nested += position <= within
             elif found is Refusal.INCOMPLETE:
                 self._rest = buffer[position:]
                 break
             else:
-                position = self._pass_over(found, buffer, position)
+                position, end = self._refuse(found, buffer, position, position == boundary)
+                boundary, within = (position if position == end else boundary), max(within, end)
+        self._aligned = position == boundary
         self._frames += len(frames)
-        if whole and self._rest:
-            frames += self._given_up()
         return frames
 
-    def _given_up(self) -> list[Frame]:
-        """The frames behind the start byte of what was none."""
-        frames: list[Frame] = []
-        while self._rest:
-            self._refused[Refusal.INCOMPLETE] += 1
-            self._noise += 1
-            after_start, self._rest = self._rest[1:], b""
-            frames += self.receive(after_start)
-        return frames
+    def _refuse(
+        self, refusal: Refusal | None, buffer: bytes, position: int, aligned: bool
+    ) -> tuple[int, int]:
+        """Where to look on, and where what was refused ends by its own word."""
+        end = outer_end(buffer, position) if refusal else 0
+        may_hide = end > 0 and not self._nested_too
+        if not (refusal and may_hide and was_whole(buffer, position, end, refusal, aligned)):
+            return self._pass_over(refusal, buffer, position), end
+        self._refused[refusal] += 1
+        if inside := frames_within(buffer, position + 1, end):
+            self._refused[Refusal.NESTED] += inside
+        self._noise += end - position
+        return end, end
 
     def _pass_over(self, refusal: Refusal | None, buffer: bytes, position: int) -> int:
-        """The position of the next start byte: at least one byte on, however long the frame."""
+        """The position of the next possible start: at least one byte on, however long the frame."""
         if refusal:
             self._refused[refusal] += 1
-        following = buffer.find(START, position + 1)
-        after = following if following >= 0 else len(buffer)
+        after = next_start(buffer, position + 1)
+        if unknown := buffer.count(START, position + 1, after):
+            self._refused[Refusal.UNKNOWN] += unknown
         self._noise += after - position
         return after
 

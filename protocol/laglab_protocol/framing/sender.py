@@ -35,6 +35,10 @@ class Sender:
         self._sequence = 0
         self._forms: dict[type[Message], Form] = {}
 
+    def sibling(self) -> "Sender":
+        """The same speaker to somebody else, who is to see no gaps in the numbers."""
+        return Sender(self._system, self._component, self._signer)
+
     def frame(self, message: Message) -> bytes:
         """The next frame, with `message` in it.
 

@@ -235,7 +235,7 @@ class MessageInterval(Message, frozen=True):
     message_id: int
 
 
-MAV_SEVERITY_WARNING = 4
+MAV_SEVERITY_EMERGENCY, MAV_SEVERITY_ERROR, MAV_SEVERITY_WARNING = 0, 3, 4
 
 
 class Statustext(Message, frozen=True):

@@ -20,7 +20,8 @@ KEY_SIZE = 32
 EPOCH_NS = 1_420_070_400 * 10**9
 """1 January 2015 UTC in Unix time [ns], where the timestamps start."""
 MINUTE = 60 * 100_000
-"""In timestamps: a stream that we do not know may not start further behind than this."""
+"""In timestamps: a stream that we do not know may not start further behind than this, and none may
+go further ahead of our clock. Else one clock in the future would lock all new streams out."""
 
 _unpack_signature = struct.Struct("<BIH6s").unpack_from
 
@@ -144,8 +145,13 @@ class Verifier:
         place = self._places.get(stream)
         if timestamp <= (place.last if place else self._earliest_new()):
             return Refusal.REPLAYED
+        if timestamp > self._clock() + MINUTE:
+            return Refusal.AHEAD
         self._places[stream] = Place(timestamp, self._timestamps.reserve(stream, timestamp))
         return None
 
     def _earliest_new(self) -> int:
-        return max(self._clock(), *self._timestamps.last.values(), 0) - MINUTE
+        """What was said later than we accept now was said by a clock that was wrong, ours too."""
+        now = self._clock()
+        believed = [last for last in self._timestamps.last.values() if last <= now + MINUTE]
+        return max(now, *believed, 0) - MINUTE

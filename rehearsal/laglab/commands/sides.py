@@ -29,7 +29,7 @@ UnsignedOption = Annotated[
     typer.Option(
         "--unsigned",
         help="Let anybody who can reach the endpoints move the robot; "
-        "with --key those who watch, who may arm and stop it.",
+        "with --key those who watch, who may see, arm and stop it.",
     ),
 ]
 

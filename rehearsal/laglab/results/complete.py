@@ -188,7 +188,10 @@ def _verdict(ending: Ending, final: Final, converged: bool, ticks: int, measured
             return f"stopped at tick {tick}: the other side failed"
         case EndReason.DISPLACED:
             return f"stopped at tick {tick}: another station has taken over"
-    word = ("converged" if converged else "did not converge") + _after_alarms(ending.station)
+    stopped = "after an emergency stop: " if ending.emergency_stop else ""
+    word = (
+        stopped + ("converged" if converged else "did not converge") + _after_alarms(ending.station)
+    )
     seen = " as measured" if measured else ""
     if final.rho is None or final.theta_error is None:
         return f"{word}: where the robot is at the end is not known"

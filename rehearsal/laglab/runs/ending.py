@@ -15,6 +15,8 @@ EXIT_CODES = {
 }
 KNOWN_BEFORE = 2
 BROKE = 4
+STOPPED = 5
+"""By an emergency stop; the run went on to its end without the robot."""
 
 
 @dataclass(frozen=True)
@@ -32,8 +34,14 @@ class Ending:
     warnings: tuple[str, ...] = ()
 
     @property
+    def emergency_stop(self) -> bool:
+        """Whether somebody stopped the robot for good, as far as this side knows."""
+        link, station = self.link, self.station
+        return bool((link and link.emergency_stops) or (station and station.emergency_stop))
+
+    @property
     def exit_code(self) -> int:
         """Of the command that made the run."""
         if self.outcome:
-            return EXIT_CODES[self.outcome.reason]
+            return EXIT_CODES[self.outcome.reason] or (STOPPED if self.emergency_stop else 0)
         return BROKE if self.begun else KNOWN_BEFORE

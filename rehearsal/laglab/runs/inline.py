@@ -29,6 +29,10 @@ class InlineLink:
         if answer := self._station.hear(self._receiver.receive(data, whole=True)):
             self._inbox.append(b"".join(answer))
 
+    def offer(self, data: bytes, to: Address | None = None) -> None:
+        """There is always room."""
+        self.send(data, to)
+
     def receive(self, timeout: float) -> bytes:
         """The next answer; where there is none, nothing will come in time either."""
         if self._inbox:

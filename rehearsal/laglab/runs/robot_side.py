@@ -172,6 +172,8 @@ class OpenRobot:
     serve: Callable[[Surroundings], Served]
     unsigned: bool
     """Whether those who watch need no key."""
+    has_key: bool
+    """Whether who speaks can be told apart from strangers."""
 
     def watch(self, endpoints: Sequence[Endpoint]) -> Watch:
         """Those who look on, each spoken to by a sender and a receiver of its own."""
@@ -180,7 +182,7 @@ class OpenRobot:
     def _watcher(self, endpoint: Endpoint) -> Watcher:
         need_no_key = EVERY_MESSAGE if self.unsigned else frozenset[str]()
         sender, receiver = self.codec.on_another_link(need_no_key)
-        return Watcher(Listener(endpoint, receiver), sender)
+        return Watcher(Listener(endpoint, receiver), sender, trusting=not self.has_key)
 
 
 @contextmanager
@@ -190,13 +192,15 @@ def open_robot(scenario: Scenario, setup: Setup) -> Iterator[OpenRobot]:
         if setup.plant is None:
             with open_gateway(scenario, codec.sender, setup.armed) as gateway:
                 serve = partial(_serve_simulated, scenario, gateway)
-                yield OpenRobot(gateway.services, codec, serve, setup.unsigned)
+                yield OpenRobot(
+                    gateway.services, codec, serve, setup.unsigned, setup.key is not None
+                )
         else:
             with open_endpoint(setup.plant) as robot:
                 refuse_open_door(robot, None, setup.unsigned)
                 relay = _relay(scenario, codec.sender, setup.armed)
                 serve = partial(serve_remote, relay, robot)
-                yield OpenRobot(relay.services, codec, serve, setup.unsigned)
+                yield OpenRobot(relay.services, codec, serve, setup.unsigned, setup.key is not None)
 
 
 def _serve_simulated(scenario: Scenario, gateway: Gateway, around: Surroundings) -> Served:

@@ -1,0 +1,34 @@
+"""What a person at the station must not overlook."""
+
+from laglab_protocol import MAV_SEVERITY_EMERGENCY, MAV_SEVERITY_ERROR, Statustext
+
+MOST_TOLD = 20
+"""Texts of the robot's; it may say whatever it likes."""
+
+
+class Warnings:
+    """By what they are about: of each the first."""
+
+    def __init__(self) -> None:
+        self._texts: dict[str, str] = {}
+        self._told = 0
+        self.emergency_stop = False
+        """Whether somebody stopped the robot for good."""
+
+    def add(self, about: str, text: str) -> None:
+        """Put a warning on record, unless there is one about this already."""
+        self._texts.setdefault(about, text)
+
+    def hear(self, told: Statustext) -> None:
+        """What the robot itself says, if it is worse than a warning."""
+        text = told.text.decode(errors="replace")
+        if told.severity > MAV_SEVERITY_ERROR or text in self._texts or self._told >= MOST_TOLD:
+            return
+        self._told += 1
+        self.emergency_stop |= told.severity == MAV_SEVERITY_EMERGENCY
+        self.add(text, f"the robot says: {text}")
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """In the order in which they were found."""
+        return tuple(self._texts.values())

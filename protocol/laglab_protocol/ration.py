@@ -1,0 +1,27 @@
+"""How much of what strangers ask for is done: so much a second, so much at once."""
+
+
+class Ration:
+    """Fills up with time, and holds no more than `at_once`. No clock of its own.
+
+    What is taken may be more than is left, where its size is only known afterwards: then nothing
+    is left until that is made up for.
+    """
+
+    def __init__(self, per_second: float, at_once: float) -> None:
+        self._per_second = per_second
+        self._at_once = at_once
+        self.rest = at_once
+        """What was left when it was last looked at, less what was taken since."""
+        self._filled = float("-inf")
+
+    def left(self, now: float) -> float:
+        """At `now` [s], which must not go back; 0 and less: nothing."""
+        more = (now - self._filled) * self._per_second
+        self.rest = min(self._at_once, self.rest + more)
+        self._filled = now
+        return self.rest
+
+    def take(self, amount: float) -> None:
+        """So much has been done."""
+        self.rest -= amount

@@ -1,0 +1,36 @@
+"""Why frames are not taken because of their signatures, for people, and what to do about it."""
+
+from collections.abc import Iterable, Iterator
+
+from laglab_protocol.framing.frame import Refusal
+from laglab_protocol.listener import Listener
+
+ENOUGH = 5
+"""So many frames: a single one may have been overtaken on its way."""
+
+MENDED = {
+    Refusal.UNSIGNED: "not signed: give the sender the same --key",
+    Refusal.BAD_SIGNATURE: "not signed with this key: give both sides the same --key",
+    Refusal.NO_KEY: "signed, and there is no key here to tell by whom: give --key here too",
+    Refusal.REPLAYED: "signed no later than what was said before, or over a minute ago: set the "
+    "clock there, and let no two senders share a link id",
+    Refusal.AHEAD: "signed over a minute ahead of the clock here: set the clocks of both "
+    "machines; where they are right now, make a new key",
+}
+"""By reason: these are about keys and clocks, and people can mend them."""
+
+
+class Refusals:
+    """Says of each link and reason, once, that frames are refused, and how to mend it."""
+
+    def __init__(self) -> None:
+        self._told: set[tuple[str, Refusal]] = set()
+
+    def news(self, listeners: Iterable[Listener]) -> Iterator[str]:
+        """What is to be told since the last time, in a line each."""
+        for listener in listeners:
+            for reason, count in listener.refused.items():
+                told = listener.link.name, reason
+                if count >= ENOUGH and reason in MENDED and told not in self._told:
+                    self._told.add(told)
+                    yield f"{listener.link.name}: frames refused: {MENDED[reason]}"
