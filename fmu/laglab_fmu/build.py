@@ -13,9 +13,9 @@ from laglab_fmu.compiler import (
     zig_compiler,
 )
 from laglab_fmu.contents import c_files, fmi_headers, fmu_contents
+from laglab_fmu.description import FMUS
 from laglab_fmu.variables import MODEL_NAME
 
-FMUS = ("Robot2", "Robot3", "Fleet3")
 ZIP_DATE = (1980, 1, 1, 0, 0, 0)
 """The oldest date that a zip can hold: the same for every file of every build."""
 

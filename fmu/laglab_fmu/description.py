@@ -17,10 +17,9 @@ from laglab_fmu.variables import (
     Variable,
 )
 
-TOKEN = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, repr((VARIABLES, TYPES, UNITS)))) + "}"
-"""Says which table a binary was made from; the same for both versions."""
-
 FLEET_NAME = "Fleet"
+FMUS = (f"{MODEL_NAME}2", f"{MODEL_NAME}3", f"{FLEET_NAME}3")
+"""Model name, which is the model identifier too, and version of FMI."""
 DESCRIPTION = "A differential-drive robot with wheel and sensor noise"
 STOP_TIME = 10.0
 """[s] of the default experiment."""
@@ -29,6 +28,12 @@ LOG_CATEGORIES = (
     ("logStatusDiscard", "Values that were refused"),
     ("logStatusError", "Calls that were wrong"),
 )
+
+
+def token(fmu: str) -> str:
+    """Says that a description and a binary belong together: of this FMU, made of this table."""
+    return "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, repr((fmu, VARIABLES, TYPES, UNITS)))) + "}"
+
 
 _CAUSALITY = {
     Role.TIME: "independent",
@@ -64,15 +69,18 @@ def model_description_2(sources: Sequence[str]) -> bytes:
         "fmiModelDescription",
         fmiVersion="2.0",
         modelName=MODEL_NAME,
-        guid=TOKEN,
+        guid=token(f"{MODEL_NAME}2"),
         description=DESCRIPTION,
         license="MIT",
         generationTool="laglab",
         variableNamingConvention="structured",
         numberOfEventIndicators="0",
     )
+    identifier = {"modelIdentifier": MODEL_NAME}
     for face in ("ModelExchange", "CoSimulation"):
-        files = SubElement(SubElement(root, face, _capabilities_2(face)), "SourceFiles")
+        files = SubElement(
+            SubElement(root, face, identifier | _capabilities_2(face)), "SourceFiles"
+        )
         for source in sources:
             SubElement(files, "File", name=source)
     _units(root)
@@ -90,23 +98,26 @@ def model_description_2(sources: Sequence[str]) -> bytes:
 
 def model_description_3(fleet: bool = False) -> bytes:
     """modelDescription.xml of FMI 3.0: one robot, or arrays of `robots`."""
+    name = FLEET_NAME if fleet else MODEL_NAME
     root = Element(
         "fmiModelDescription",
         fmiVersion="3.0",
-        modelName=FLEET_NAME if fleet else MODEL_NAME,
-        instantiationToken=TOKEN,
+        modelName=name,
+        instantiationToken=token(f"{name}3"),
         description=DESCRIPTION + (", many at once" if fleet else ""),
         license="MIT",
         generationTool="laglab",
         variableNamingConvention="structured",
     )
     for face in ("CoSimulation",) if fleet else ("ModelExchange", "CoSimulation"):
-        SubElement(root, face, _capabilities_3(face))
+        SubElement(root, face, {"modelIdentifier": name} | _capabilities_3(face))
     _units(root)
     _types_3(root)
     _log_categories(root)
     SubElement(root, "DefaultExperiment", DEFAULT_EXPERIMENT)
-    variables = [v for v in VARIABLES if fleet or v.role is not Role.ROBOTS]
+    variables = [v for v in VARIABLES if v.role is not Role.ROBOTS]
+    if fleet:  # first, for importers that follow dimensions while they read
+        variables.insert(0, VARIABLES[REFERENCE["robots"]])
     model = SubElement(root, "ModelVariables")
     for variable in variables:
         _variable_3(model, variable, fleet)
@@ -137,7 +148,7 @@ def _capabilities_3(face: str) -> dict[str, str]:
 def _capabilities(face: str, names: tuple[str, ...]) -> dict[str, str]:
     if face == "CoSimulation":
         names = (*names, "canHandleVariableCommunicationStepSize")
-    return {"modelIdentifier": MODEL_NAME} | dict.fromkeys(names, "true")
+    return dict.fromkeys(names, "true")
 
 
 def _units(root: Element) -> None:

@@ -1,6 +1,7 @@
 """The C header made from the table of variables."""
 
 import math
+from collections.abc import Mapping
 
 from laglab_fmu.variables import VARIABLES, Kind, Role, Variable
 
@@ -29,7 +30,7 @@ _TEMPLATE = """\
 
 #include "instance.h"
 
-#define MODEL_TOKEN "{token}"
+{tokens}
 
 enum {{
 {references}
@@ -44,10 +45,10 @@ static const Variable VARIABLE[VARIABLES] = {{
 """
 
 
-def variables_header(token: str) -> str:
-    """The text of `variables.h`: value references, and what the C side needs of each variable."""
+def variables_header(tokens: Mapping[str, str]) -> str:
+    """The text of `variables.h`: tokens by FMU, value references, what C needs of each variable."""
     return _TEMPLATE.format(
-        token=token,
+        tokens="\n".join(f'#define TOKEN_{name.upper()} "{text}"' for name, text in tokens.items()),
         references="\n".join(f"    {_constant(variable)}," for variable in VARIABLES),
         lines="\n".join(_line(variable) for variable in VARIABLES),
     )

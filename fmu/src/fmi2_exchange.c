@@ -37,7 +37,7 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component component, fmi2Boolean no_s
     REQUIRE(terminate);
     *enter_event_mode = fmi2False;
     *terminate = fmi2False;
-    return fmi2OK;
+    return (fmi2Status)instance_check_stop(I, I->time, "a completed step's end,");
 }
 
 fmi2Status fmi2SetTime(fmi2Component component, fmi2Real time) {

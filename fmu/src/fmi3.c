@@ -1,8 +1,11 @@
 /* The FMI 3.0 face: life cycle and co-simulation. */
 #include "fmi3Functions.h"
 
+#include <math.h>
+
 #define FMI_STATUS fmi3Status
 #include "face.h"
+#include "variables.h"
 
 static void log_message(const Instance *instance, Status status, const char *category, const char *message) {
     const fmi3LogMessageCallback logger = (fmi3LogMessageCallback)instance->callback;
@@ -11,8 +14,12 @@ static void log_message(const Instance *instance, Status status, const char *cat
 
 static Instance *instantiate(Kind kind, fmi3String name, fmi3String token, fmi3Boolean logging,
                              fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger) {
-    const Instance draft = {
-        .kind = kind, .log = log_message, .callback = (void (*)(void))logger, .environment = environment};
+    static const char *const TOKENS[] = {TOKEN_ROBOT3, TOKEN_FLEET3, NULL};
+    const Instance draft = {.kind = kind,
+                            .tokens = TOKENS,
+                            .log = log_message,
+                            .callback = (void (*)(void))logger,
+                            .environment = environment};
     return instance_new(&draft, name, token, logging);
 }
 
@@ -30,7 +37,7 @@ fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi
                                           fmi3LogMessageCallback logger) {
     UNUSED(resources);
     UNUSED(visible);
-    return instantiate(MODEL_EXCHANGE, name, token, logging, environment, logger);
+    return instantiate(KIND_MODEL_EXCHANGE, name, token, logging, environment, logger);
 }
 
 fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible,
@@ -48,7 +55,7 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3
         if (logger) logger(environment, fmi3Error, "logStatusError", "co-simulation has no event mode");
         return NULL;
     }
-    return instantiate(CO_SIMULATION, name, token, logging, environment, logger);
+    return instantiate(KIND_CO_SIMULATION, name, token, logging, environment, logger);
 }
 
 fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token, fmi3String resources,
@@ -76,16 +83,15 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolera
                                        fmi3Float64 start, fmi3Boolean stop_defined, fmi3Float64 stop) {
     UNUSED(tolerance_defined);
     UNUSED(tolerance);
-    UNUSED(stop_defined);
-    UNUSED(stop);
     INSTANCE(instance, MODE_INSTANTIATED);
-    return (fmi3Status)instance_enter_initialization(I, start);
+    const Status status = instance_set_experiment(I, start, stop_defined ? stop : INFINITY);
+    return (fmi3Status)(status == STATUS_OK ? instance_enter_initialization(I) : status);
 }
 
 fmi3Status fmi3ExitInitializationMode(fmi3Instance instance) {
     INSTANCE(instance, MODE_INITIALIZATION);
     instance_refresh(I);
-    I->mode = I->kind == MODEL_EXCHANGE ? MODE_EVENT : MODE_STEP;
+    I->mode = I->kind == KIND_MODEL_EXCHANGE ? MODE_EVENT : MODE_STEP;
     return fmi3OK;
 }
 
@@ -97,8 +103,7 @@ fmi3Status fmi3Terminate(fmi3Instance instance) {
 
 fmi3Status fmi3Reset(fmi3Instance instance) {
     INSTANCE(instance, MODES_ANY);
-    instance_reset(I);
-    return fmi3OK;
+    return (fmi3Status)instance_reset(I);
 }
 
 fmi3Status fmi3EnterConfigurationMode(fmi3Instance instance) {

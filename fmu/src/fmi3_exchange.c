@@ -49,7 +49,7 @@ fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean no_sta
     REQUIRE(terminate);
     *enter_event_mode = fmi3False;
     *terminate = fmi3False;
-    return fmi3OK;
+    return (fmi3Status)instance_check_stop(I, I->time, "a completed step's end,");
 }
 
 fmi3Status fmi3SetTime(fmi3Instance instance, fmi3Float64 time) {

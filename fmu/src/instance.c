@@ -103,13 +103,11 @@ Status instance_configure(Instance *instance, size_t robots) {
     return STATUS_OK;
 }
 
-void instance_reset(Instance *instance) {
-    for (size_t i = 0; i < instance->robots; i++) {
-        set_defaults(&instance->robot[i], (int64_t)i);
-    }
+Status instance_reset(Instance *instance) {
     instance->mode = MODE_INSTANTIATED;
-    instance->stale = true;
     instance->start_time = instance->time = 0.0;
+    instance->stop_time = INFINITY;
+    return instance_configure(instance, (size_t)VARIABLE[VR_ROBOTS].start);
 }
 
 Instance *instance_new(const Instance *draft, const char *name, const char *token, bool debug) {
@@ -120,19 +118,20 @@ Instance *instance_new(const Instance *draft, const char *name, const char *toke
     *instance = *draft;
     instance->logged = LOG_DISCARD | LOG_ERROR | (debug ? LOG_EVENTS : 0);
     instance->name = calloc(1, name ? strlen(name) + 1 : 1);
-    if (!instance->name || instance_configure(instance, 1) != STATUS_OK) {
+    if (!instance->name || instance_reset(instance) != STATUS_OK) {
         instance_free(instance);
         return NULL;
     }
     strcpy(instance->name, name ? name : "");
-    if (!token || strcmp(token, MODEL_TOKEN) != 0) {
-        instance_log(instance, STATUS_ERROR, "instantiation token is %s; this binary belongs to %s", token ? token : "NULL",
-                     MODEL_TOKEN);
-        instance_free(instance);
-        return NULL;
+    for (const char *const *own = instance->tokens; token && *own; own++) {
+        if (strcmp(token, *own) == 0) {
+            return instance;
+        }
     }
-    instance_reset(instance);
-    return instance;
+    instance_log(instance, STATUS_ERROR, "instantiation token is %s; this binary belongs to %s", token ? token : "NULL",
+                 instance->tokens[0]);
+    instance_free(instance);
+    return NULL;
 }
 
 void instance_free(Instance *instance) {
@@ -156,14 +155,31 @@ void instance_refresh(Instance *instance) {
     instance->stale = false;
 }
 
-Status instance_enter_initialization(Instance *instance, double start_time) {
+Status instance_set_experiment(Instance *instance, double start_time, double stop_time) {
     if (!isfinite(start_time)) {
         return instance_log(instance, STATUS_ERROR, "startTime is %g, not a finite time", start_time);
     }
-    instance->start_time = instance->time = start_time;
-    instance->mode = MODE_INITIALIZATION;
-    instance_log(instance, STATUS_OK, "initializing %zu robot(s) at time %g s", instance->robots, start_time);
+    if (!(start_time <= stop_time)) {
+        return instance_log(instance, STATUS_ERROR, "startTime %g s is not before stopTime, %g s", start_time, stop_time);
+    }
+    instance->start_time = start_time;
+    instance->stop_time = stop_time;
     return STATUS_OK;
+}
+
+Status instance_enter_initialization(Instance *instance) {
+    instance->time = instance->start_time;
+    instance->mode = MODE_INITIALIZATION;
+    instance_log(instance, STATUS_OK, "initializing %zu robot(s) at time %g s", instance->robots, instance->time);
+    return STATUS_OK;
+}
+
+Status instance_check_stop(const Instance *instance, double time, const char *what) {
+    const double tolerance = TIME_TOLERANCE * fmax(fabs(time), time - instance->start_time);
+    if (time - tolerance <= instance->stop_time) {
+        return STATUS_OK;
+    }
+    return instance_log(instance, STATUS_ERROR, "%s %.17g s is beyond stopTime, %.17g s", what, time, instance->stop_time);
 }
 
 Status instance_step(Instance *instance, double start, double step) {
@@ -174,6 +190,9 @@ Status instance_step(Instance *instance, double start, double step) {
     if (fabs(start - instance->time) > TIME_TOLERANCE * (fabs(instance->time) + step)) {
         return instance_log(instance, STATUS_ERROR, "currentCommunicationPoint %.17g: the instance is at time %.17g", start,
                             instance->time);
+    }
+    if (instance_check_stop(instance, start + step, "the end of the step,") != STATUS_OK) {
+        return STATUS_ERROR;
     }
     for (size_t i = 0; i < instance->robots; i++) {
         if (step > LONGEST_STEP * instance->robot[i].sample_time) {

@@ -11,7 +11,8 @@
 /* The numbers are those of fmi2Status and fmi3Status. DISCARD: a value was refused, nothing has changed. */
 typedef enum { STATUS_OK, STATUS_WARNING, STATUS_DISCARD, STATUS_ERROR } Status;
 
-typedef enum { MODEL_EXCHANGE, CO_SIMULATION } Kind;
+/* Not by the bare names: importers' build files define those as macros. */
+typedef enum { KIND_MODEL_EXCHANGE, KIND_CO_SIMULATION } Kind;
 
 typedef enum {
     MODE_INSTANTIATED = 1,
@@ -54,6 +55,7 @@ struct Instance {
     uint64_t zero; /* an importer that takes the first word for a pointer to free finds none */
     Kind kind;
     Mode mode;
+    const char *const *tokens; /* of the FMUs that the face serves; NULL ends them */
     LogFunction log;
     void (*callback)(void); /* the importer's logger, in the version's own type */
     void *environment;
@@ -62,10 +64,10 @@ struct Instance {
     bool stale;      /* what follows from inputs, parameters and states is not yet computed */
     size_t robots;
     Robot *robot;
-    double start_time, time;
+    double start_time, stop_time, time; /* without a stop, infinity */
 };
 
-/* NULL when the token is not this model's or memory runs out; says so through `log`. */
+/* NULL when the token is none of the draft's or memory runs out; says so through `log`. */
 Instance *instance_new(const Instance *draft, const char *name, const char *token, bool debug);
 void instance_free(Instance *instance);
 
@@ -77,8 +79,12 @@ Status instance_set_logging(Instance *instance, bool on, size_t count, const cha
 bool instance_allows(const Instance *instance, int modes, const char *call);
 
 Status instance_configure(Instance *instance, size_t robots);
-Status instance_enter_initialization(Instance *instance, double start_time);
-void instance_reset(Instance *instance);
+/* Start and stop of the experiment, for `instance_enter_initialization`; without a stop, INFINITY. */
+Status instance_set_experiment(Instance *instance, double start_time, double stop_time);
+Status instance_enter_initialization(Instance *instance);
+Status instance_reset(Instance *instance);
+/* Whether a step may end there: not beyond the stop; logs when it is. In model exchange solvers may look beyond. */
+Status instance_check_stop(const Instance *instance, double time, const char *what);
 Status instance_step(Instance *instance, double start, double step);
 
 /* Brings every value that follows from others up to date. */

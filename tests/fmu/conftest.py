@@ -12,7 +12,7 @@ from fmpy.fmi3 import FMU3Model, FMU3Slave
 from laglab_fmu import build_fmus
 from laglab_fmu import slave as slave_module
 from laglab_fmu.compiler import host_platform
-from laglab_fmu.description import TOKEN
+from laglab_fmu.description import token
 from laglab_fmu.variables import MODEL_NAME, REFERENCE, VARIABLES, Kind
 
 
@@ -22,7 +22,11 @@ class Face:
     def __init__(self, name: str, kind: str, folder: Path, debug: bool) -> None:
         self.version, self.kind = int(name[-1]), kind
         self.messages: list[tuple[int, str, str]] = []
-        arguments = {"guid": TOKEN, "modelIdentifier": MODEL_NAME, "unzipDirectory": str(folder)}
+        arguments = {
+            "guid": token(name),
+            "modelIdentifier": name[:-1],
+            "unzipDirectory": str(folder),
+        }
         if self.version == 2:
             platform = host_platform()
             inside = f"binaries/{platform.fmi2_folder}/{MODEL_NAME}{platform.suffix}"
@@ -50,14 +54,15 @@ class Face:
         getter = self.fmu.getReal if self.version == 2 else self.fmu.getFloat64
         return list(getter([REFERENCE[name] for name in names]))
 
-    def start(self, time: float = 0.0, **values: float) -> None:
+    def start(self, time: float = 0.0, stop: float | None = None, **values: float) -> None:
         """Sets parameters and leaves initialization mode."""
         self.set(**values)
+        experiment = {"startTime": time, "stopTime": stop}
         if self.version == 2:
-            self.fmu.setupExperiment(startTime=time)
+            self.fmu.setupExperiment(**experiment)
             self.fmu.enterInitializationMode()
         else:
-            self.fmu.enterInitializationMode(startTime=time)
+            self.fmu.enterInitializationMode(**experiment)
         self.fmu.exitInitializationMode()
 
     def step(self, time: float, step: float = 0.01) -> None:

@@ -13,8 +13,8 @@ from fmpy.util import read_csv
 from fmpy.validation import validate_fmu
 from lxml import etree
 
-from laglab_fmu.build import FMUS
 from laglab_fmu.contents import REFERENCE_LAYER, own_files
+from laglab_fmu.description import FMUS
 from laglab_fmu.variables import VARIABLES, Role
 
 ROOT = Path(__file__).parents[2]
@@ -53,6 +53,23 @@ def test_every_variable_has_type_unit_and_display_unit(fmus: dict[str, Path], na
     faces = {"CoSimulation"} if name == "Fleet3" else {"CoSimulation", "ModelExchange"}
     given = {"CoSimulation": model.coSimulation, "ModelExchange": model.modelExchange}
     assert {face for face, value in given.items() if value} == faces
+
+
+def test_the_size_of_a_fleet_comes_before_what_it_sizes(extracted: dict[str, Path]) -> None:
+    """Importers follow a dimension as soon as they read it."""
+    model = etree.parse(extracted["Fleet3"] / "modelDescription.xml").find("ModelVariables")
+    read: set[str] = set()
+    for variable in model:
+        read.add(variable.get("valueReference"))
+        assert {dimension.get("valueReference") for dimension in variable} <= read
+    assert len(read) == len(VARIABLES)
+
+
+def test_every_fmu_has_a_token_of_its_own(fmus: dict[str, Path]) -> None:
+    models = [read_model_description(str(path)) for path in fmus.values()]
+    assert len({model.guid for model in models}) == len(FMUS)
+    for model, name in zip(models, fmus, strict=True):
+        assert model.coSimulation.modelIdentifier == model.modelName == name[:-1]
 
 
 def test_fmi_2_leaves_time_out_and_gives_a_tolerance(fmus: dict[str, Path]) -> None:

@@ -84,6 +84,18 @@ def test_the_size_is_set_in_configuration_mode_only(make_face: Callable[..., Any
     assert "2 values given for variables that hold 3" in face.messages[-1][2]
 
 
+def test_reset_gives_the_size_its_default_back(make_face: Callable[..., Any]) -> None:
+    face = make_face("Fleet3", "CoSimulation")
+    face.fmu.enterConfigurationMode()
+    face.set(robots=3)
+    face.fmu.exitConfigurationMode()
+    face.fmu.reset()
+    assert face.fmu.getUInt64([REFERENCE["robots"]]) == [1]
+    assert face.fmu.getInt32([REFERENCE["seed"]]) == [1]
+    face.start()
+    face.step(0.0)
+
+
 def test_derivatives_and_states_of_a_fleet(make_face: Callable[..., Any]) -> None:
     face = make_face("Fleet3", "CoSimulation")
     face.fmu.enterConfigurationMode()

@@ -121,6 +121,42 @@ def test_a_step_from_another_time(make_face: Callable[..., Any], name: str) -> N
 
 
 @pytest.mark.parametrize("name", NAMES)
+def test_nothing_goes_beyond_the_stop_time(make_face: Callable[..., Any], name: str) -> None:
+    face = make_face(name, "CoSimulation")
+    with refused(face, ERROR, "startTime 2 s", "stopTime, 1 s"):
+        face.start(2.0, stop=1.0)
+    face.start(stop=0.3)
+    for tick in range(30):  # 0.29 + 0.01 and 0.3 are not the same number
+        face.step(tick * 0.01)
+    before = face.get("x", "x_meas")
+    with refused(face, ERROR, "0.31", "beyond stopTime, 0.29999"):
+        face.step(0.3)
+    assert face.get("x", "x_meas") == before
+    other = make_face(name, "CoSimulation")
+    other.become(face.packed())
+    with refused(other, ERROR, "beyond stopTime"):
+        other.step(0.3)
+    face.fmu.reset()
+    face.start()
+    face.step(0.0, 1000.0)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_model_exchange_takes_no_step_beyond_the_stop_time(
+    make_face: Callable[..., Any], name: str
+) -> None:
+    """Its solver may look there."""
+    face = make_face(name, "ModelExchange")
+    face.start(stop=10.0)
+    face.fmu.enterContinuousTimeMode()
+    face.fmu.setTime(10.01)
+    with refused(face, ERROR, "10.01", "is beyond stopTime, 10 s"):
+        face.fmu.completedIntegratorStep()
+    face.fmu.setTime(10.0)
+    face.fmu.completedIntegratorStep()
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_calls_in_the_wrong_state(make_face: Callable[..., Any], name: str) -> None:
     face = make_face(name, "CoSimulation")
     with refused(face, ERROR, f"fmi{name[-1]}DoStep", "instantiated"):
