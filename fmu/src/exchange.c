@@ -29,7 +29,18 @@ Status instance_set_states(Instance *instance, const double states[]) {
     return STATUS_OK;
 }
 
-void instance_get_derivatives(Instance *instance, double derivatives[]) {
+static Status check_derivatives(const Instance *instance, const double derivatives[]) {
+    static const char *const NAME[STATES] = {"der(x)", "der(y)", "der(theta)"};
+    for (size_t i = 0; i < STATES * instance->robots; i++) {
+        const char *name = NAME[i / instance->robots];
+        if (instance_check_value(instance, name, i % instance->robots, derivatives[i]) != STATUS_OK) {
+            return STATUS_ERROR;
+        }
+    }
+    return STATUS_OK;
+}
+
+Status instance_get_derivatives(Instance *instance, double derivatives[]) {
     instance_refresh(instance);
     for (size_t i = 0; i < instance->robots; i++) {
         Robot *robot = &instance->robot[i];
@@ -38,6 +49,7 @@ void instance_get_derivatives(Instance *instance, double derivatives[]) {
         derivatives[i + instance->robots] = robot->der_y;
         derivatives[i + 2 * instance->robots] = robot->der_theta;
     }
+    return check_derivatives(instance, derivatives);
 }
 
 Status instance_set_time(Instance *instance, double time) {

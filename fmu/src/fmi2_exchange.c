@@ -64,8 +64,7 @@ fmi2Status fmi2GetDerivatives(fmi2Component component, fmi2Real derivatives[], s
     INSTANCE(component, MODES_EVALUATE);
     REQUIRE(derivatives);
     if (count != STATES * I->robots) REFUSE("the model has 3 continuous states");
-    instance_get_derivatives(I, derivatives);
-    return fmi2OK;
+    return (fmi2Status)instance_get_derivatives(I, derivatives);
 }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component component, fmi2Real nominals[], size_t count) {

@@ -76,8 +76,7 @@ fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance instance, fmi3Float64 
     INSTANCE(instance, MODES_EVALUATE);
     REQUIRE(derivatives);
     if (count != STATES * I->robots) REFUSE("a robot has 3 continuous states");
-    instance_get_derivatives(I, derivatives);
-    return fmi3OK;
+    return (fmi3Status)instance_get_derivatives(I, derivatives);
 }
 
 fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance instance, fmi3Float64 nominals[], size_t count) {

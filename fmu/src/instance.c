@@ -8,12 +8,6 @@
 
 #include "variables.h"
 
-/* Longer than anybody waits for, and short enough to count its samples. */
-static const double LONGEST_STEP = 1e9; /* samples */
-
-/* Two times closer than this part of them are the same, computed in two ways. */
-static const double TIME_TOLERANCE = 1e-9;
-
 static const struct {
     const char *name;
     unsigned bit;
@@ -90,11 +84,16 @@ static void set_defaults(Robot *robot, int64_t index) {
 }
 
 Status instance_configure(Instance *instance, size_t robots) {
-    Robot *robot = robots <= SIZE_MAX / sizeof *robot ? realloc(instance->robot, robots * sizeof *robot) : NULL;
-    if (!robot) {
+    Robot *robot = robots <= SIZE_MAX / sizeof *robot ? malloc(robots * sizeof *robot) : NULL;
+    Robot *before = robot ? malloc(robots * sizeof *before) : NULL;
+    if (!before) {
+        free(robot);
         return instance_log(instance, STATUS_ERROR, "robots: no memory for %zu robots", robots);
     }
+    free(instance->robot);
+    free(instance->before);
     instance->robot = robot;
+    instance->before = before;
     instance->robots = robots;
     instance->stale = true;
     for (size_t i = 0; i < robots; i++) {
@@ -137,6 +136,7 @@ Instance *instance_new(const Instance *draft, const char *name, const char *toke
 void instance_free(Instance *instance) {
     if (instance) {
         free(instance->robot);
+        free(instance->before);
         free(instance->name);
         free(instance);
     }
@@ -171,39 +171,5 @@ Status instance_enter_initialization(Instance *instance) {
     instance->time = instance->start_time;
     instance->mode = MODE_INITIALIZATION;
     instance_log(instance, STATUS_OK, "initializing %zu robot(s) at time %g s", instance->robots, instance->time);
-    return STATUS_OK;
-}
-
-Status instance_check_stop(const Instance *instance, double time, const char *what) {
-    const double tolerance = TIME_TOLERANCE * fmax(fabs(time), time - instance->start_time);
-    if (time - tolerance <= instance->stop_time) {
-        return STATUS_OK;
-    }
-    return instance_log(instance, STATUS_ERROR, "%s %.17g s is beyond stopTime, %.17g s", what, time, instance->stop_time);
-}
-
-Status instance_step(Instance *instance, double start, double step) {
-    if (!isfinite(start) || !isfinite(step) || step <= 0.0) {
-        return instance_log(instance, STATUS_ERROR, "communicationStepSize %g at time %g: the step must be above zero", step,
-                            start);
-    }
-    if (fabs(start - instance->time) > TIME_TOLERANCE * (fabs(instance->time) + step)) {
-        return instance_log(instance, STATUS_ERROR, "currentCommunicationPoint %.17g: the instance is at time %.17g", start,
-                            instance->time);
-    }
-    if (instance_check_stop(instance, start + step, "the end of the step,") != STATUS_OK) {
-        return STATUS_ERROR;
-    }
-    for (size_t i = 0; i < instance->robots; i++) {
-        if (step > LONGEST_STEP * instance->robot[i].sample_time) {
-            return instance_log(instance, STATUS_ERROR, "communicationStepSize %g is more than %g sample times", step,
-                                LONGEST_STEP);
-        }
-    }
-    for (size_t i = 0; i < instance->robots; i++) {
-        robot_step(&instance->robot[i], step);
-    }
-    instance->time = start + step;
-    instance->stale = true;
     return STATUS_OK;
 }

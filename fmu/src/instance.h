@@ -63,7 +63,7 @@ struct Instance {
     unsigned logged; /* LOG_ categories */
     bool stale;      /* what follows from inputs, parameters and states is not yet computed */
     size_t robots;
-    Robot *robot;
+    Robot *robot, *before; /* `before` has room for what a step may have to take back */
     double start_time, stop_time, time; /* without a stop, infinity */
 };
 
@@ -89,6 +89,10 @@ Status instance_step(Instance *instance, double start, double step);
 
 /* Brings every value that follows from others up to date. */
 void instance_refresh(Instance *instance);
+/* Whether arithmetic has overflowed in no output; logs the name of one where it has. Refreshes. */
+Status instance_check_finite(Instance *instance);
+/* For one variable's value, of robot `robot`. */
+Status instance_check_value(const Instance *instance, const char *name, size_t robot, double value);
 
 /* The variable, or NULL and one logged line when the reference is not one of that type. */
 const Variable *instance_variable(const Instance *instance, Type type, uint32_t reference, const char *call);
@@ -130,7 +134,7 @@ Status instance_adjoint(Instance *instance, const Partials *partials, const doub
 /* Model exchange: continuous states are all x, then all y, then all theta. */
 void instance_get_states(const Instance *instance, double states[]);
 Status instance_set_states(Instance *instance, const double states[]);
-void instance_get_derivatives(Instance *instance, double derivatives[]);
+Status instance_get_derivatives(Instance *instance, double derivatives[]);
 Status instance_set_time(Instance *instance, double time);
 void instance_take_samples(Instance *instance);
 double instance_next_sample(const Instance *instance);

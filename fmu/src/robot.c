@@ -133,6 +133,13 @@ void robot_sample(Robot *robot) {
     draw(robot);
 }
 
+bool robot_is_finite(const Robot *robot) {
+    /* zero times a finite number is zero, times anything else it is none; quicker than eight questions */
+    const double pose = 0.0 * robot->x + 0.0 * robot->y + 0.0 * robot->theta;
+    const double measured = 0.0 * robot->x_meas + 0.0 * robot->y_meas + 0.0 * robot->theta_meas;
+    return pose + measured + 0.0 * robot->v + 0.0 * robot->omega == 0.0;
+}
+
 void robot_step(Robot *robot, double step) {
     const double tolerance = TIME_TOLERANCE * robot->sample_time;
     while (step > tolerance) {

@@ -6,6 +6,7 @@
 #ifndef LAGLAB_ROBOT_H
 #define LAGLAB_ROBOT_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 enum { INTEGRATION_EULER = 1, INTEGRATION_EXACT = 2 };
@@ -49,6 +50,9 @@ void robot_partials(const Robot *robot, double partial[UNKNOWNS][KNOWNS]);
 
 /* Moves the robot over `step` > 0 seconds with its inputs held, sampling where the sample grid says. */
 void robot_step(Robot *robot, double step);
+
+/* Whether neither outputs have overflowed, after `robot_speeds`. */
+bool robot_is_finite(const Robot *robot);
 
 /* Takes the next sample here and now: fresh noise and a fresh measurement. */
 void robot_sample(Robot *robot);

@@ -55,6 +55,31 @@ static double *copy_floats(const Instance *instance, const Variable *variable, d
     return values;
 }
 
+Status instance_check_value(const Instance *instance, const char *name, size_t robot, double value) {
+    if (isfinite(value)) {
+        return STATUS_OK;
+    }
+    return instance_log(instance, STATUS_ERROR, "%s of robot %zu is %g: its inputs or parameters are too large", name, robot,
+                        value);
+}
+
+Status instance_check_finite(Instance *instance) {
+    instance_refresh(instance);
+    for (size_t k = 0; k < instance->robots; k++) {
+        if (robot_is_finite(&instance->robot[k])) {
+            continue;
+        }
+        for (size_t i = 0; i < VARIABLES; i++) {
+            double value;
+            memcpy(&value, slot(&instance->robot[k], &VARIABLE[i]), sizeof value);
+            if (VARIABLE[i].role == ROLE_OUTPUT && !isfinite(value)) {
+                return instance_check_value(instance, VARIABLE[i].name, k, value);
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
 Status instance_get_floats(Instance *instance, const uint32_t references[], size_t count, double values[], size_t size,
                            const char *call) {
     const Status status = instance_check_size(instance, TYPE_FLOAT64, references, count, size, call);
@@ -67,7 +92,13 @@ Status instance_get_floats(Instance *instance, const uint32_t references[], size
         for (size_t k = 0; variable->role == ROLE_DERIVATIVE && k < instance->robots; k++) {
             robot_derivatives(&instance->robot[k]);
         }
+        const double *first = values;
         values = copy_floats(instance, variable, values);
+        for (const double *value = first; value < values; value++) {
+            if (instance_check_value(instance, variable->name, (size_t)(value - first), *value) != STATUS_OK) {
+                return STATUS_ERROR;
+            }
+        }
     }
     return STATUS_OK;
 }
@@ -90,10 +121,13 @@ static Status check_settable(const Instance *instance, const Variable *variable,
 }
 
 static Status check_range(const Instance *instance, const Variable *variable, double value, const char *call) {
-    if (isfinite(value) && value >= variable->minimum && value <= variable->maximum) {
+    if (!isfinite(value)) {
+        return instance_log(instance, STATUS_DISCARD, "%s: %s = %g refused: it must be finite", call, variable->name, value);
+    }
+    if (value >= variable->minimum && value <= variable->maximum) {
         return STATUS_OK;
     }
-    return instance_log(instance, STATUS_DISCARD, "%s: %s = %g refused: it must be finite and in [%g, %g]", call,
+    return instance_log(instance, STATUS_DISCARD, "%s: %s = %g refused: it must be in [%g, %g]", call,
                         variable->name, value, variable->minimum, variable->maximum);
 }
 

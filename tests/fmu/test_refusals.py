@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from ctypes import c_double
+from ctypes import byref, c_double, c_void_p
 from typing import Any
 
 import pytest
@@ -107,6 +107,83 @@ def test_a_step_that_leads_nowhere(make_face: Callable[..., Any], name: str, ste
         face.step(0.0, step)
     assert face.get("x", "x_meas", "v") == before
     still_works(face)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_infinity_is_told_from_a_value_out_of_bounds(
+    make_face: Callable[..., Any], name: str
+) -> None:
+    face = make_face(name, "CoSimulation")
+    with refused(face, DISCARD, "omega_left = inf refused: it must be finite"):
+        face.set(omega_left=math.inf)
+    assert "in [" not in face.messages[-1][2]
+    with refused(face, DISCARD, "track = 1000 refused: it must be in [0.001, 100]"):
+        face.set(track=1000.0)
+    face.start()
+    with refused(face, ERROR, "communicationStepSize inf", "must be finite"):
+        face.step(0.0, math.inf)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_step_too_small_for_the_time(make_face: Callable[..., Any], name: str) -> None:
+    face = make_face(name, "CoSimulation")
+    face.start(1e6)
+    with refused(face, ERROR, "communicationStepSize 1e-11", "does not advance"):
+        face.step(1e6, 1e-11)
+    face.step(1e6, 1e-9)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_overflow_is_an_error_that_names_the_variable(
+    make_face: Callable[..., Any], name: str
+) -> None:
+    face = make_face(name, "CoSimulation")
+    face.start()
+    face.step(0.0)
+    before = face.get("x", "theta", "x_meas", "theta_meas")
+    face.set(omega_left=-1e308, omega_right=1e308)
+    with refused(face, ERROR, "omega of robot 0 is inf"):
+        face.get("theta", "omega")
+    for _ in range(2):
+        with refused(face, ERROR, "of robot 0 is "):
+            face.step(0.01)
+    assert face.get("x", "theta", "x_meas", "theta_meas") == before
+    face.set(omega_left=1.0, omega_right=1.0)
+    face.step(0.01)
+    assert all(map(math.isfinite, face.get("x", "y", "theta", "v", "omega")))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_derivative_that_overflows_is_named(make_face: Callable[..., Any], name: str) -> None:
+    face = make_face(name, "ModelExchange")
+    face.start(theta_start=1.0, wheel_radius=10.0)
+    face.fmu.enterContinuousTimeMode()
+    face.set(omega_left=1e308, omega_right=1e308)
+    values = (c_double * 3)()
+    get = "getDerivatives" if name == "Robot2" else "getContinuousStateDerivatives"
+    with refused(face, ERROR, "der(x) of robot 0 is inf"):
+        getattr(face.fmu, get)(values, 3)
+    with refused(face, ERROR, "der(y) of robot 0 is inf"):
+        face.get("theta", "der(y)")
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("kind", KINDS)
+def test_an_unknown_type_makes_no_instance(
+    make_face: Callable[..., Any], name: str, kind: str
+) -> None:
+    """FMI 2.0 tells the type by a number; 3.0 by the function, and one of those is not offered."""
+    face = make_face(name, kind)
+    text = (face.fmu.instanceName.encode(), face.fmu.guid.encode(), b"")
+    if name == "Robot2":
+        given = face.fmu.fmi2Instantiate(text[0], 2, *text[1:], byref(face.fmu.callbacks), 0, 0)
+        assert "type 2 is neither" in face.messages[-1][2]
+    else:
+        instantiate = face.fmu.dll["fmi3InstantiateScheduledExecution"]
+        instantiate.restype = c_void_p
+        given = instantiate(*text, False, False, None, face.fmu.logMessage, None, None, None)
+        assert "scheduled execution" in face.messages[-1][2]
+    assert not given
 
 
 @pytest.mark.parametrize("name", NAMES)
