@@ -104,7 +104,7 @@ def _documentation() -> dict[str, bytes]:
 
 def _row(variable: Variable) -> str:
     unit = next((t.unit for t in TYPES if t.name == variable.declared_type), "")
-    start = repr(variable.start) if variable.role is Role.PARAMETER else ""
+    start = repr(variable.start) if variable.role in (Role.PARAMETER, Role.TUNABLE) else ""
     cells = (variable.name, unit, variable.role.value, start, variable.description)
     return "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in cells) + "</tr>"
 

@@ -39,14 +39,21 @@ _CAUSALITY = {
     Role.TIME: "independent",
     Role.ROBOTS: "structuralParameter",
     Role.PARAMETER: "parameter",
+    Role.TUNABLE: "parameter",
     Role.INPUT: "input",
     Role.STATE: "output",
     Role.SAMPLED: "output",
     Role.ALGEBRAIC: "output",
     Role.DERIVATIVE: "local",
 }
-_VARIABILITY = {Role.ROBOTS: "fixed", Role.PARAMETER: "fixed", Role.SAMPLED: "discrete"}
-_HAS_START = (Role.ROBOTS, Role.PARAMETER, Role.INPUT)
+_VARIABILITY = {
+    Role.ROBOTS: "fixed",
+    Role.PARAMETER: "fixed",
+    Role.TUNABLE: "tunable",
+    Role.SAMPLED: "discrete",
+}
+_PARAMETERS = (Role.PARAMETER, Role.TUNABLE)
+_HAS_START = (Role.ROBOTS, *_PARAMETERS, Role.INPUT)
 _OUTPUTS = (Role.STATE, Role.SAMPLED, Role.ALGEBRAIC)
 
 
@@ -227,7 +234,7 @@ def _common(variable: Variable) -> dict[str, str]:
         "variability": _variability(variable),
         "description": variable.description,
     }
-    if variable.role is Role.PARAMETER:
+    if variable.role in _PARAMETERS:
         attributes["initial"] = "exact"
     elif variable.role not in (Role.TIME, Role.INPUT, Role.ROBOTS):
         attributes["initial"] = "calculated"

@@ -29,6 +29,7 @@ class Role(Enum):
     TIME = "time"
     ROBOTS = "robots"
     PARAMETER = "parameter"
+    TUNABLE = "tunable parameter"
     INPUT = "input"
     STATE = "state"
     SAMPLED = "sampled"
@@ -89,6 +90,10 @@ def _parameter(
     nominal: float,
 ) -> Variable:
     return Variable(name, Role.PARAMETER, description, declared, START[name], *bounds, nominal)
+
+
+def _gain(name: str, description: str) -> Variable:
+    return Variable(name, Role.TUNABLE, description, "Ratio", 1.0, 0.0, 1e3, 1.0)
 
 
 _FREE = (None, None)
@@ -178,6 +183,8 @@ VARIABLES = (
         maximum=1e6,
         kind=Kind.UINT64,
     ),
+    _gain("wheel_noise_gain", "Of the wheels' noise, from the next sample on"),
+    _gain("measurement_noise_gain", "Of the measurement's noise, from the next sample on"),
 )
 
 REFERENCE = {variable.name: reference for reference, variable in enumerate(VARIABLES)}

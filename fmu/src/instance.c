@@ -76,7 +76,7 @@ static void set_defaults(Robot *robot, int64_t index) {
     for (size_t i = 0; i < VARIABLES; i++) {
         const Variable *variable = &VARIABLE[i];
         const int64_t whole = (int64_t)variable->start;
-        if (variable->role == ROLE_PARAMETER || variable->role == ROLE_INPUT) {
+        if (is_settable(variable)) {
             memcpy((char *)robot + variable->offset, variable->type == TYPE_FLOAT64 ? (const void *)&variable->start : &whole, 8);
         }
     }

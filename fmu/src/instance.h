@@ -37,7 +37,7 @@ enum { LOG_EVENTS = 1, LOG_DISCARD = 2, LOG_ERROR = 4 };
 
 typedef enum { TYPE_FLOAT64, TYPE_INT32, TYPE_INT64, TYPE_UINT64, TYPE_BOOLEAN } Type;
 
-typedef enum { ROLE_TIME, ROLE_ROBOTS, ROLE_PARAMETER, ROLE_INPUT, ROLE_OUTPUT, ROLE_DERIVATIVE } Role;
+typedef enum { ROLE_TIME, ROLE_ROBOTS, ROLE_PARAMETER, ROLE_TUNABLE, ROLE_INPUT, ROLE_OUTPUT, ROLE_DERIVATIVE } Role;
 
 /* A line of the table of variables; its value reference is its index. */
 typedef struct {
@@ -47,6 +47,10 @@ typedef struct {
     size_t offset; /* in Robot */
     double minimum, maximum, start;
 } Variable;
+
+static inline bool is_settable(const Variable *variable) {
+    return variable->role == ROLE_PARAMETER || variable->role == ROLE_TUNABLE || variable->role == ROLE_INPUT;
+}
 
 typedef struct Instance Instance;
 typedef void (*LogFunction)(const Instance *, Status, const char *category, const char *message);

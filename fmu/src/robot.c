@@ -108,11 +108,12 @@ static void draw(Robot *robot) {
         noise_normal((uint64_t)robot->seed, (uint64_t)robot->sample, WHEEL_NOISE, 2, w);
         noise_normal((uint64_t)robot->seed, (uint64_t)robot->sample, MEASUREMENT_NOISE, 3, v);
     }
-    robot->wheel_noise_left = sqrt(robot->wheel_noise_variance) * w[0];
-    robot->wheel_noise_right = sqrt(robot->wheel_noise_variance) * w[1];
-    robot->x_meas = robot->x + sqrt(robot->measurement_variance_x) * v[0];
-    robot->y_meas = robot->y + sqrt(robot->measurement_variance_y) * v[1];
-    robot->theta_meas = robot->theta + sqrt(robot->measurement_variance_theta) * v[2];
+    const double shaken = robot->wheel_noise_gain, misread = robot->measurement_noise_gain;
+    robot->wheel_noise_left = shaken * (sqrt(robot->wheel_noise_variance) * w[0]);
+    robot->wheel_noise_right = shaken * (sqrt(robot->wheel_noise_variance) * w[1]);
+    robot->x_meas = robot->x + misread * (sqrt(robot->measurement_variance_x) * v[0]);
+    robot->y_meas = robot->y + misread * (sqrt(robot->measurement_variance_y) * v[1]);
+    robot->theta_meas = robot->theta + misread * (sqrt(robot->measurement_variance_theta) * v[2]);
 }
 
 void robot_start(Robot *robot) {

@@ -19,6 +19,8 @@ typedef struct {
     double x_start, y_start, theta_start;
     double wheel_speed_max, motor_time_constant, wheel_radius_error, track_error, wheel_slip;
     int64_t seed, noise, integration;
+    /* parameters that may change on the way */
+    double wheel_noise_gain, measurement_noise_gain;
     /* inputs: commanded wheel speeds */
     double omega_left, omega_right;
     /* continuous states */

@@ -129,7 +129,7 @@ static bool head_is_sound(const Head *head) {
 static const char *unsound_field(const Robot *robot) {
     for (size_t i = 0; i < VARIABLES; i++) {
         const Variable *variable = &VARIABLE[i];
-        if (variable->role != ROLE_PARAMETER && variable->role != ROLE_INPUT) {
+        if (!is_settable(variable)) {
             continue;
         }
         double value;

@@ -104,18 +104,23 @@ Status instance_get_floats(Instance *instance, const uint32_t references[], size
 }
 
 static Status check_settable(const Instance *instance, const Variable *variable, const char *call) {
-    const int modes = variable->role == ROLE_PARAMETER ? MODES_START
-                      : variable->role == ROLE_INPUT   ? MODES_START | MODES_RUN
-                      : variable->role == ROLE_ROBOTS  ? MODE_CONFIGURATION
-                                                       : 0;
+    static const struct {
+        int modes;
+        const char *when;
+    } ALLOWED[] = {
+        [ROLE_PARAMETER] = {MODES_START, "before the simulation starts"},
+        [ROLE_TUNABLE] = {MODES_START | MODE_EVENT | MODE_STEP, "before the simulation starts, at events and between steps"},
+        [ROLE_INPUT] = {MODES_START | MODES_RUN, "before the simulation ends"},
+        [ROLE_ROBOTS] = {MODE_CONFIGURATION, "in configuration mode"},
+        [ROLE_DERIVATIVE] = {0, NULL},
+    };
+    const int modes = ALLOWED[variable->role].modes;
     if (!modes) {
         return instance_log(instance, STATUS_ERROR, "%s: %s cannot be set", call, variable->name);
     }
     if (!(instance->mode & modes)) {
         return instance_log(instance, STATUS_ERROR, "%s: %s cannot be set now, only %s", call, variable->name,
-                            variable->role == ROLE_PARAMETER ? "before the simulation starts"
-                            : variable->role == ROLE_INPUT   ? "before the simulation ends"
-                                                             : "in configuration mode");
+                            ALLOWED[variable->role].when);
     }
     return STATUS_OK;
 }

@@ -13,6 +13,7 @@ from laglab_fmu.variables import REFERENCE, VARIABLES, Kind, Role
 DISCARD, ERROR = 2, 3
 NAMES = ["Robot2", "Robot3"]
 KINDS = ["CoSimulation", "ModelExchange"]
+SETTABLE = (Role.PARAMETER, Role.TUNABLE, Role.INPUT)
 CATEGORY = {DISCARD: "logStatusDiscard", ERROR: "logStatusError"}
 
 
@@ -51,7 +52,7 @@ def test_every_real_must_be_finite(
 ) -> None:
     face = make_face(name, kind)
     for variable in VARIABLES:
-        if variable.kind is Kind.FLOAT64 and variable.role in (Role.PARAMETER, Role.INPUT):
+        if variable.kind is Kind.FLOAT64 and variable.role in SETTABLE:
             with refused(face, DISCARD, f"{variable.name} = ", "refused"):
                 face.set(**{variable.name: value})
     face.start()
@@ -64,7 +65,7 @@ def test_every_real_must_be_finite(
 def test_bounds_are_those_of_the_description(make_face: Callable[..., Any], name: str) -> None:
     face = make_face(name, "CoSimulation")
     for variable in VARIABLES:
-        if variable.role is not Role.PARAMETER or variable.kind is Kind.BOOLEAN:
+        if variable.role not in SETTABLE or variable.kind is Kind.BOOLEAN:
             continue
         for bound, direction in ((variable.minimum, -1), (variable.maximum, 1)):
             if bound is None:
