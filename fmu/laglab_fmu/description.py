@@ -6,6 +6,7 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 from laglab_fmu.parameters import INTEGRATIONS
+from laglab_fmu.structure import structure_2, structure_3
 from laglab_fmu.units import TYPES, UNITS, DeclaredType, Unit
 from laglab_fmu.variables import (
     MODEL_NAME,
@@ -54,7 +55,6 @@ _VARIABILITY = {
 }
 _PARAMETERS = (Role.PARAMETER, Role.TUNABLE)
 _HAS_START = (Role.ROBOTS, *_PARAMETERS, Role.INPUT)
-_OUTPUTS = (Role.STATE, Role.SAMPLED, Role.ALGEBRAIC)
 
 
 def number(value: float) -> str:
@@ -99,7 +99,7 @@ def model_description_2(sources: Sequence[str]) -> bytes:
     model = SubElement(root, "ModelVariables")
     for variable in variables:
         _variable_2(model, variable, index)
-    _structure_2(root, variables, index)
+    structure_2(root, variables, index)
     return xml_text(root)
 
 
@@ -128,7 +128,7 @@ def model_description_3(fleet: bool = False) -> bytes:
     model = SubElement(root, "ModelVariables")
     for variable in variables:
         _variable_3(model, variable, fleet)
-    _structure_3(root, variables)
+    structure_3(root, variables)
     return xml_text(root)
 
 
@@ -261,38 +261,6 @@ def _variable_3(model: Element, variable: Variable, fleet: bool) -> None:
     element = SubElement(model, variable.kind.value, attributes)
     if fleet and variable.role not in (Role.TIME, Role.ROBOTS):
         SubElement(element, "Dimension", valueReference=str(REFERENCE["robots"]))
-
-
-def _dependencies(variable: Variable) -> tuple[str, ...]:
-    return (variable.name,) if variable.role is Role.STATE else variable.depends_on
-
-
-def _structure_2(root: Element, variables: list[Variable], index: dict[str, str]) -> None:
-    structure = SubElement(root, "ModelStructure")
-    for group, roles in (("Outputs", _OUTPUTS), ("Derivatives", (Role.DERIVATIVE,))):
-        unknowns = SubElement(structure, group)
-        for variable in variables:
-            if variable.role in roles:
-                depends = " ".join(index[name] for name in _dependencies(variable))
-                attributes = {"index": index[variable.name], "dependencies": depends}
-                SubElement(unknowns, "Unknown", attributes)
-    initial = SubElement(structure, "InitialUnknowns")
-    for variable in variables:
-        if variable.role in (*_OUTPUTS, Role.DERIVATIVE):
-            SubElement(initial, "Unknown", index=index[variable.name])
-
-
-def _structure_3(root: Element, variables: list[Variable]) -> None:
-    structure = SubElement(root, "ModelStructure")
-    for group, roles in (("Output", _OUTPUTS), ("ContinuousStateDerivative", (Role.DERIVATIVE,))):
-        for variable in variables:
-            if variable.role in roles:
-                depends = " ".join(str(REFERENCE[name]) for name in _dependencies(variable))
-                reference = str(REFERENCE[variable.name])
-                SubElement(structure, group, valueReference=reference, dependencies=depends)
-    for variable in variables:
-        if variable.role in (*_OUTPUTS, Role.DERIVATIVE):
-            SubElement(structure, "InitialUnknown", valueReference=str(REFERENCE[variable.name]))
 
 
 def xml_text(root: Element) -> bytes:

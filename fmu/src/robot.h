@@ -45,10 +45,9 @@ void robot_speeds(Robot *robot);
 /* der_x, der_y, der_theta at the present pose, after `robot_speeds`. */
 void robot_derivatives(Robot *robot);
 
-/* Partial derivatives of the continuous equations at the present state and inputs, after `robot_speeds`. */
-enum { BY_X, BY_Y, BY_THETA, BY_OMEGA_LEFT, BY_OMEGA_RIGHT, KNOWNS };
-enum { OF_X, OF_Y, OF_THETA, OF_V, OF_OMEGA, OF_DER_X, OF_DER_Y, OF_DER_THETA, OF_SAMPLED, UNKNOWNS };
-void robot_partials(const Robot *robot, double partial[UNKNOWNS][KNOWNS]);
+/* First-order change of outputs and derivatives along `direction`, which holds the changes of what they follow from:
+ * inputs and pose or, when `starting`, inputs and parameters. Call after `robot_speeds`. */
+void robot_tangent(const Robot *robot, const Robot *direction, bool starting, Robot *change);
 
 /* Moves the robot over `step` > 0 seconds with its inputs held, sampling where the sample grid says. */
 void robot_step(Robot *robot, double step);
