@@ -70,7 +70,7 @@ def fmu_contents(name: str, binaries: Mapping[Platform, bytes]) -> dict[str, byt
     for platform, library in binaries.items():
         folder = platform.fmi2_folder if version == 2 else platform.fmi3_folder
         files[f"binaries/{folder}/{identifier}{platform.suffix}"] = library
-    return files | _documentation() | _icons(version) | ({} if fleet else _reference_results())
+    return files | _documentation() | _icons(version) | _reference_results(identifier)
 
 
 def _sources(version: int) -> dict[str, bytes]:
@@ -146,8 +146,8 @@ def _terminals() -> bytes:
     return xml_text(root)
 
 
-def _reference_results() -> dict[str, bytes]:
-    """Inputs of the default experiment and what the model answers."""
+def _reference_results(identifier: str) -> dict[str, bytes]:
+    """Inputs of the default experiment and the answers; a fleet is one robot by default."""
     ElementTree.register_namespace("fmi-ls", _LAYER_NAMESPACE)
     layer = {
         "fmi-ls-name": REFERENCE_LAYER,
@@ -162,8 +162,10 @@ def _reference_results() -> dict[str, bytes]:
         ("in", "input", "Wheel speeds of the default experiment"),
         ("out", "result", "Output of the default experiment in co-simulation"),
     ):
-        name = f"{MODEL_NAME}_{end}.csv"
+        name = f"{identifier}_{end}.csv"
         attributes = {"type": "text/csv", "source": name, "role": role}
         SubElement(root, "Related", attributes, description=description)
-        files[f"extra/{REFERENCE_LAYER}/{name}"] = (own_files("content") / name).read_bytes()
+        files[f"extra/{REFERENCE_LAYER}/{name}"] = (
+            own_files("content") / f"{MODEL_NAME}_{end}.csv"
+        ).read_bytes()
     return files | {f"extra/{REFERENCE_LAYER}/fmi-ls-manifest.xml": xml_text(root)}

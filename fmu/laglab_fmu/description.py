@@ -116,7 +116,7 @@ def model_description_3(fleet: bool = False) -> bytes:
         generationTool="laglab",
         variableNamingConvention="structured",
     )
-    for face in ("CoSimulation",) if fleet else ("ModelExchange", "CoSimulation"):
+    for face in ("ModelExchange", "CoSimulation"):
         SubElement(root, face, {"modelIdentifier": name} | _capabilities_3(face))
     _units(root)
     _types_3(root)
@@ -149,7 +149,13 @@ def _capabilities_3(face: str) -> dict[str, str]:
         "providesDirectionalDerivatives",
         "providesAdjointDerivatives",
     )
-    return _capabilities(face, names)
+    in_a_step = (
+        "providesIntermediateUpdate",
+        "mightReturnEarlyFromDoStep",
+        "canReturnEarlyAfterIntermediateUpdate",
+        "hasEventMode",
+    )
+    return _capabilities(face, names if face == "ModelExchange" else (*names, *in_a_step))
 
 
 def _capabilities(face: str, names: tuple[str, ...]) -> dict[str, str]:
@@ -258,6 +264,8 @@ def _variable_3(model: Element, variable: Variable, fleet: bool) -> None:
         attributes["declaredType"] = variable.declared_type
     if variable.state:
         attributes["derivative"] = str(REFERENCE[variable.state])
+    if _CAUSALITY[variable.role] == "output":
+        attributes["intermediateUpdate"] = "true"
     element = SubElement(model, variable.kind.value, attributes)
     if fleet and variable.role not in (Role.TIME, Role.ROBOTS):
         SubElement(element, "Dimension", valueReference=str(REFERENCE["robots"]))

@@ -198,7 +198,8 @@ fmi2Status fmi2SetString(fmi2Component component, const fmi2ValueReference vr[],
 fmi2Status fmi2DoStep(fmi2Component component, fmi2Real start, fmi2Real step, fmi2Boolean no_state_before) {
     UNUSED(no_state_before);
     INSTANCE(component, MODE_STEP);
-    return (fmi2Status)instance_step(I, start, step);
+    StepEnd end;
+    return (fmi2Status)instance_step(I, start, step, &end);
 }
 
 fmi2Status fmi2CancelStep(fmi2Component component) {

@@ -12,15 +12,15 @@ static void log_message(const Instance *instance, Status status, const char *cat
     logger(instance->environment, (fmi3Status)status, category, message);
 }
 
-static Instance *instantiate(Kind kind, fmi3String name, fmi3String token, fmi3Boolean logging,
-                             fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger) {
-    static const char *const TOKENS[] = {TOKEN_ROBOT3, TOKEN_FLEET3, NULL};
-    const Instance draft = {.kind = kind,
-                            .tokens = TOKENS,
-                            .log = log_message,
-                            .callback = (void (*)(void))logger,
-                            .environment = environment};
-    return instance_new(&draft, name, token, logging);
+static const char *const TOKENS[] = {TOKEN_ROBOT3, TOKEN_FLEET3, NULL};
+
+/* Nothing is to be set here, everything may be read, and an internal step has just ended. */
+static bool intermediate_update(const Instance *instance, double time) {
+    const fmi3IntermediateUpdateCallback update = (fmi3IntermediateUpdateCallback)instance->update_callback;
+    fmi3Boolean return_early = fmi3False;
+    fmi3Float64 return_time = time;
+    update(instance->environment, time, fmi3False, fmi3True, fmi3True, instance->early_return, &return_early, &return_time);
+    return return_early;
 }
 
 const char *fmi3GetVersion(void) {
@@ -37,7 +37,12 @@ fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi
                                           fmi3LogMessageCallback logger) {
     UNUSED(resources);
     UNUSED(visible);
-    return instantiate(KIND_MODEL_EXCHANGE, name, token, logging, environment, logger);
+    const Instance draft = {.kind = KIND_MODEL_EXCHANGE,
+                            .tokens = TOKENS,
+                            .log = log_message,
+                            .callback = (void (*)(void))logger,
+                            .environment = environment};
+    return instance_new(&draft, name, token, logging);
 }
 
 fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible,
@@ -47,15 +52,18 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3
                                          fmi3IntermediateUpdateCallback update) {
     UNUSED(resources);
     UNUSED(visible);
-    UNUSED(early_return);
     UNUSED(intermediate);
     UNUSED(intermediates);
-    UNUSED(update);
-    if (event_mode) {
-        if (logger) logger(environment, fmi3Error, "logStatusError", "co-simulation has no event mode");
-        return NULL;
-    }
-    return instantiate(KIND_CO_SIMULATION, name, token, logging, environment, logger);
+    const Instance draft = {.kind = KIND_CO_SIMULATION,
+                            .tokens = TOKENS,
+                            .log = log_message,
+                            .callback = (void (*)(void))logger,
+                            .environment = environment,
+                            .update = update ? intermediate_update : NULL,
+                            .update_callback = (void (*)(void))update,
+                            .event_mode = event_mode,
+                            .early_return = early_return};
+    return instance_new(&draft, name, token, logging);
 }
 
 fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token, fmi3String resources,
@@ -91,7 +99,7 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolera
 fmi3Status fmi3ExitInitializationMode(fmi3Instance instance) {
     INSTANCE(instance, MODE_INITIALIZATION);
     instance_refresh(I);
-    I->mode = I->kind == KIND_MODEL_EXCHANGE ? MODE_EVENT : MODE_STEP;
+    I->mode = I->kind == KIND_MODEL_EXCHANGE ? MODE_EVENT : I->event_mode ? MODE_STEP_EVENT : MODE_STEP;
     return fmi3OK;
 }
 
@@ -119,8 +127,9 @@ fmi3Status fmi3ExitConfigurationMode(fmi3Instance instance) {
 }
 
 fmi3Status fmi3EnterStepMode(fmi3Instance instance) {
-    INSTANCE(instance, MODES_ANY);
-    REFUSE("co-simulation has no event mode");
+    INSTANCE(instance, MODE_STEP_EVENT);
+    I->mode = MODE_STEP;
+    return fmi3OK;
 }
 
 fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 start, fmi3Float64 step, fmi3Boolean no_state_before,
@@ -131,10 +140,11 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 start, fmi3Float64 step
     REQUIRE(terminate);
     REQUIRE(early_return);
     REQUIRE(last_time);
-    const Status status = instance_step(I, start, step);
-    *event_needed = fmi3False;
+    StepEnd end;
+    const Status status = instance_step(I, start, step, &end);
+    *event_needed = end.event_needed;
     *terminate = fmi3False;
-    *early_return = fmi3False;
+    *early_return = end.early_return;
     *last_time = I->time;
     return (fmi3Status)status;
 }

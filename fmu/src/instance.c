@@ -58,7 +58,8 @@ bool instance_allows(const Instance *instance, int modes, const char *call) {
         const char *name;
     } NAME[] = {{MODE_INSTANTIATED, "instantiated"}, {MODE_CONFIGURATION, "configuration mode"},
                 {MODE_INITIALIZATION, "initialization mode"}, {MODE_EVENT, "event mode"},
-                {MODE_CONTINUOUS_TIME, "continuous-time mode"}, {MODE_STEP, "step mode"}, {MODE_TERMINATED, "terminated"}};
+                {MODE_CONTINUOUS_TIME, "continuous-time mode"}, {MODE_STEP, "step mode"}, {MODE_STEP_EVENT, "event mode"},
+                {MODE_INTERMEDIATE, "intermediate update mode"}, {MODE_TERMINATED, "terminated"}};
     if (instance->mode & modes) {
         return true;
     }

@@ -21,13 +21,16 @@ typedef enum {
     MODE_EVENT = 8,
     MODE_CONTINUOUS_TIME = 16,
     MODE_STEP = 32,
-    MODE_TERMINATED = 64
+    MODE_TERMINATED = 64,
+    MODE_STEP_EVENT = 128, /* event mode of co-simulation */
+    MODE_INTERMEDIATE = 256
 } Mode;
 
 enum {
     MODES_START = MODE_INSTANTIATED | MODE_INITIALIZATION,
-    MODES_RUN = MODE_EVENT | MODE_CONTINUOUS_TIME | MODE_STEP,
-    MODES_ANY = MODES_START | MODES_RUN | MODE_CONFIGURATION | MODE_TERMINATED
+    MODES_RUN = MODE_EVENT | MODE_CONTINUOUS_TIME | MODE_STEP | MODE_STEP_EVENT,
+    MODES_ANY = MODES_START | MODES_RUN | MODE_CONFIGURATION | MODE_TERMINATED,
+    MODES_READ = MODES_ANY | MODE_INTERMEDIATE
 };
 
 /* Room for one logged line. */
@@ -54,6 +57,12 @@ static inline bool is_settable(const Variable *variable) {
 
 typedef struct Instance Instance;
 typedef void (*LogFunction)(const Instance *, Status, const char *category, const char *message);
+/* Lets the importer read in the middle of a step; true when it asks for the step to end there. */
+typedef bool (*UpdateFunction)(const Instance *, double time);
+
+typedef struct {
+    bool event_needed, early_return;
+} StepEnd;
 
 struct Instance {
     uint64_t zero; /* an importer that takes the first word for a pointer to free finds none */
@@ -64,6 +73,10 @@ struct Instance {
     void (*callback)(void); /* the importer's logger, in the version's own type */
     void *environment;
     char *name;
+    UpdateFunction update;      /* called at every sample inside a step; NULL for never */
+    void (*update_callback)(void);
+    bool event_mode;   /* in co-simulation: samples are taken in event mode, not by the step itself ... */
+    bool early_return; /* ... which ends at the first, or wherever `update` asks for it */
     unsigned logged; /* LOG_ categories */
     bool stale;      /* what follows from inputs, parameters and states is not yet computed */
     size_t robots;
@@ -89,7 +102,8 @@ Status instance_enter_initialization(Instance *instance);
 Status instance_reset(Instance *instance);
 /* Whether a step may end there: not beyond the stop; logs when it is. In model exchange solvers may look beyond. */
 Status instance_check_stop(const Instance *instance, double time, const char *what);
-Status instance_step(Instance *instance, double start, double step);
+/* A refused step moves no robot. */
+Status instance_step(Instance *instance, double start, double step, StepEnd *end);
 
 /* Brings every value that follows from others up to date. */
 void instance_refresh(Instance *instance);

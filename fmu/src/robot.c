@@ -140,18 +140,29 @@ bool robot_is_finite(const Robot *robot) {
     return pose + measured + 0.0 * robot->v + 0.0 * robot->omega == 0.0;
 }
 
+double robot_to_sample(const Robot *robot) {
+    return robot->sample_time - robot->elapsed;
+}
+
+bool robot_is_due(const Robot *robot) {
+    return robot->elapsed >= robot->sample_time;
+}
+
+void robot_move(Robot *robot, double step) {
+    const double to_sample = robot_to_sample(robot);
+    const bool reached = step >= to_sample - TIME_TOLERANCE * robot->sample_time;
+    robot_speeds(robot);
+    move(robot, reached ? to_sample : step);
+    robot->elapsed = reached ? robot->sample_time : robot->elapsed + step;
+}
+
 void robot_step(Robot *robot, double step) {
-    const double tolerance = TIME_TOLERANCE * robot->sample_time;
-    while (step > tolerance) {
-        const double to_sample = robot->sample_time - robot->elapsed;
-        robot_speeds(robot);
-        if (step < to_sample - tolerance) {
-            move(robot, step);
-            robot->elapsed += step;
-            return;
+    while (step > TIME_TOLERANCE * robot->sample_time) {
+        const double to_sample = robot_to_sample(robot);
+        robot_move(robot, step);
+        if (robot_is_due(robot)) {
+            robot_sample(robot);
         }
-        move(robot, to_sample);
-        robot_sample(robot);
         step -= to_sample;
     }
 }

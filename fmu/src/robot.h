@@ -52,6 +52,11 @@ void robot_tangent(const Robot *robot, const Robot *direction, bool starting, Ro
 /* Moves the robot over `step` > 0 seconds with its inputs held, sampling where the sample grid says. */
 void robot_step(Robot *robot, double step);
 
+/* The same in pieces: the time that is left to the next sample, a move that ends there at most, whether it is there. */
+double robot_to_sample(const Robot *robot);
+void robot_move(Robot *robot, double step);
+bool robot_is_due(const Robot *robot);
+
 /* Whether neither outputs have overflowed, after `robot_speeds`. */
 bool robot_is_finite(const Robot *robot);
 

@@ -55,6 +55,9 @@ Status instance_restore(Instance *instance, const SavedState *state) {
                             (size_t)head->robots, head->kind == KIND_CO_SIMULATION ? "co-simulation" : "model exchange",
                             instance->robots, instance->kind == KIND_CO_SIMULATION ? "co-simulation" : "model exchange");
     }
+    if (head->mode == MODE_STEP_EVENT && !instance->event_mode) {
+        return instance_log(instance, STATUS_ERROR, "the saved state is in event mode, which the instance does not use");
+    }
     instance->mode = (Mode)head->mode;
     instance->start_time = head->start_time;
     instance->stop_time = head->stop_time;
@@ -117,7 +120,7 @@ Status state_serialize(const Instance *instance, const SavedState *state, unsign
 }
 
 static bool head_is_sound(const Head *head) {
-    const int modes = head->kind == KIND_CO_SIMULATION ? MODE_STEP : MODE_EVENT | MODE_CONTINUOUS_TIME;
+    const int modes = head->kind == KIND_CO_SIMULATION ? MODE_STEP | MODE_STEP_EVENT : MODE_EVENT | MODE_CONTINUOUS_TIME;
     const int any = modes | MODES_START | MODE_CONFIGURATION | MODE_TERMINATED;
     const bool one_mode = head->mode != 0 && (head->mode & (head->mode - 1)) == 0;
     return (head->kind == KIND_CO_SIMULATION || head->kind == KIND_MODEL_EXCHANGE) && one_mode &&

@@ -1,4 +1,4 @@
-/* Co-simulation: steps, and what is refused of them. A refused step moves no robot. */
+/* Co-simulation: steps, the samples inside them, and what is refused. */
 #include "instance.h"
 
 #include <math.h>
@@ -16,6 +16,15 @@ Status instance_check_stop(const Instance *instance, double time, const char *wh
         return STATUS_OK;
     }
     return instance_log(instance, STATUS_ERROR, "%s %.17g s is beyond stopTime, %.17g s", what, time, instance->stop_time);
+}
+
+static bool sample_is_due(const Instance *instance) {
+    for (size_t i = 0; i < instance->robots; i++) {
+        if (robot_is_due(&instance->robot[i])) {
+            return true;
+        }
+    }
+    return false;
 }
 
 static Status check_step(const Instance *instance, double start, double step) {
@@ -39,6 +48,9 @@ static Status check_step(const Instance *instance, double start, double step) {
                                 LONGEST_STEP);
         }
     }
+    if (instance->event_mode && sample_is_due(instance)) {
+        return instance_log(instance, STATUS_ERROR, "a sample is due at time %.17g: it is taken in event mode", instance->time);
+    }
     return instance_check_stop(instance, start + step, "the end of the step,");
 }
 
@@ -53,19 +65,75 @@ static void undo(Instance *instance) {
     instance->stale = true;
 }
 
-Status instance_step(Instance *instance, double start, double step) {
+/* Moves all robots over `step`, at most to the first of their samples; returns how far. */
+static double move_to_sample(Instance *instance, double step) {
+    for (size_t i = 0; i < instance->robots; i++) {
+        step = fmin(step, robot_to_sample(&instance->robot[i]));
+    }
+    for (size_t i = 0; i < instance->robots; i++) {
+        robot_move(&instance->robot[i], step);
+    }
+    instance->stale = true;
+    return step;
+}
+
+static bool update_asks_to_return(Instance *instance) {
+    if (!instance->update) {
+        return false;
+    }
+    instance->mode = MODE_INTERMEDIATE;
+    const bool asked = instance->update(instance, instance->time);
+    instance->mode = MODE_STEP;
+    return asked && instance->early_return;
+}
+
+static double shortest_sample_time(const Instance *instance) {
+    double shortest = INFINITY;
+    for (size_t i = 0; i < instance->robots; i++) {
+        shortest = fmin(shortest, instance->robot[i].sample_time);
+    }
+    return shortest;
+}
+
+/* From sample to sample, as long as nobody wants to hear of one. */
+static void step_by_samples(Instance *instance, double step, StepEnd *end) {
+    const double last = instance->time + step, tolerance = TIME_TOLERANCE * shortest_sample_time(instance);
+    bool ended = false;
+    while (!ended && !end->event_needed && !end->early_return) {
+        step -= move_to_sample(instance, step);
+        const bool due = sample_is_due(instance);
+        ended = step <= tolerance;
+        instance->time = ended ? last : last - step;
+        end->event_needed = due && instance->event_mode && (ended || instance->early_return);
+        if (due && !end->event_needed) {
+            instance_take_samples(instance);
+        }
+        end->early_return = (end->event_needed || update_asks_to_return(instance)) && !ended;
+    }
+}
+
+Status instance_step(Instance *instance, double start, double step, StepEnd *end) {
+    *end = (StepEnd){false, false};
     if (check_step(instance, start, step) != STATUS_OK) {
         return STATUS_ERROR;
     }
+    const double time = instance->time;
     keep(instance);
-    for (size_t i = 0; i < instance->robots; i++) {
-        robot_step(&instance->robot[i], step);
-    }
     instance->stale = true;
+    instance->time = start;
+    if (instance->event_mode || instance->update) {
+        step_by_samples(instance, step, end);
+    } else {
+        for (size_t i = 0; i < instance->robots; i++) {
+            robot_step(&instance->robot[i], step);
+        }
+        instance->time = start + step;
+    }
     if (instance_check_finite(instance) != STATUS_OK) {
         undo(instance);
+        instance->time = time;
+        *end = (StepEnd){false, false};
         return STATUS_ERROR;
     }
-    instance->time = start + step;
     return STATUS_OK;
 }

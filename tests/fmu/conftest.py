@@ -19,7 +19,7 @@ from laglab_fmu.variables import MODEL_NAME, REFERENCE, VARIABLES, Kind
 class Face:
     """An fmpy instance; calls that differ between the versions have one name here."""
 
-    def __init__(self, name: str, kind: str, folder: Path, debug: bool) -> None:
+    def __init__(self, name: str, kind: str, folder: Path, debug: bool, **options: Any) -> None:
         self.version, self.kind = int(name[-1]), kind
         self.messages: list[tuple[int, str, str]] = []
         arguments = {
@@ -37,7 +37,9 @@ class Face:
             callbacks.logger = fmi2CallbackLoggerTYPE(lambda _, _name, *entry: self._logged(*entry))
             self.fmu.instantiate(callbacks=callbacks, loggingOn=debug)
         else:
-            self.fmu.instantiate(loggingOn=debug, logMessage=lambda _, *entry: self._logged(*entry))
+            self.fmu.instantiate(
+                loggingOn=debug, logMessage=lambda _, *entry: self._logged(*entry), **options
+            )
 
     def _logged(self, status: int, category: bytes, text: bytes) -> None:
         self.messages.append((status, category.decode(), text.decode()))
@@ -141,8 +143,8 @@ def make_face(extracted: dict[str, Path]) -> Iterator[MakeFace]:
     """`make_face("Robot3", "CoSimulation")`: an instance that lives as long as the test."""
     made: list[Face] = []
 
-    def make(name: str, kind: str, debug: bool = False) -> Face:
-        made.append(Face(name, kind, extracted[name], debug))
+    def make(name: str, kind: str, debug: bool = False, **options: Any) -> Face:
+        made.append(Face(name, kind, extracted[name], debug, **options))
         return made[-1]
 
     yield make
