@@ -23,7 +23,7 @@ Start = Callable[..., "subprocess.Popen[str]"]
 
 
 @pytest.fixture
-def start(tmp_path: Path) -> Iterator[Start]:
+def start_program(tmp_path: Path) -> Iterator[Start]:
     """Start a program in the background; whatever still runs at the end is ended."""
     running: list[subprocess.Popen[str]] = []
 
@@ -42,6 +42,12 @@ def start(tmp_path: Path) -> Iterator[Start]:
     for process in running:
         process.kill()
         process.communicate()
+
+
+@pytest.fixture
+def start(start_program: Start) -> Start:
+    """The same, where no other is meant."""
+    return start_program
 
 
 @pytest.fixture

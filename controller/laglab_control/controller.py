@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from laglab_control.doubt import doubt
 from laglab_control.errors import ConfigError
 from laglab_control.estimators.family import EstimatorKind, estimator_kind
-from laglab_control.estimators.interface import Applied, Estimator, Measured, State
+from laglab_control.estimators.interface import Applied, Calibration, Estimator, Measured, State
 from laglab_control.estimators.kalman import Belief, Innovation
 from laglab_control.flight import Echo, Flight, hear, send, take_off
 from laglab_control.guard import Alarm, Guard, Watched
@@ -20,7 +20,7 @@ from laglab_control.laws.aicardi import STAND_STILL, Demand, Law, as_input
 from laglab_control.limits import Ticks, check, covariance, finite_pose
 from laglab_control.model import Matrix, Vector
 from laglab_control.motion import Way, joined
-from laglab_control.robot import RobotModel
+from laglab_control.robot import RobotModel, Ways
 
 INITIAL_VARIANCE = 1e-4
 """P_0 = INITIAL_VARIANCE I by default [m^2, m^2, rad^2]."""
@@ -117,7 +117,7 @@ class Controller:
     def advance(self, control: Control) -> Control:
         """One tick later: the last command is on its way, the one n ticks older was applied."""
         estimate, flight, drive, _ = control
-        flight, applied = send(self.config.model, flight, as_input(drive))
+        flight, applied = send(self._robot(estimate), flight, as_input(drive))
         estimate = self._estimator.predict(estimate, self._applied(applied, drive))
         return Control(estimate, flight, drive)
 
@@ -138,7 +138,7 @@ class Controller:
         The robot is to stand still when there is no estimate to drive it by, or it has diverged.
         """
         estimate, flight, drive, _ = control
-        flight, inputs = hear(self.config.model, flight, echoes, recalled)
+        flight, inputs = hear(self._robot(estimate), flight, echoes, recalled)
         if self._guard and isinstance(estimate, Watched):
             settled = flight.told.settled
             estimate = self._guard.correct(estimate, measurements, inputs, settled)
@@ -185,6 +185,10 @@ class Controller:
             x, P = self.config.model.predict(x, P, u)
         return Belief(np.array(pose), P)
 
+    def learned(self, control: Control) -> tuple[Calibration, ...]:
+        """What the estimator has learned of the robot besides its pose."""
+        return self._estimator.learned(control.estimate)
+
     def alarm(self, control: Control) -> Alarm | None:
         """What the guard has found at this tick."""
         return control.estimate.alarm if isinstance(control.estimate, Watched) else None
@@ -192,6 +196,10 @@ class Controller:
     def gated(self, control: Control) -> int:
         """How many measurements the guard found too wild to be used."""
         return control.estimate.gated if isinstance(control.estimate, Watched) else 0
+
+    def _robot(self, estimate: State) -> Ways:
+        """As it is known by now."""
+        return self._estimator.calibrated(estimate, self.config.model)
 
     def _applied(self, u: Vector, drive: Demand) -> Vector:
         """The input that the estimator is told."""

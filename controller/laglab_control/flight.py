@@ -11,7 +11,7 @@ from laglab_control.model import Vector
 from laglab_control.motion import NOWHERE, Way, joined
 from laglab_control.past.log import Log, append, logged
 from laglab_control.past.sliding import SlidingProduct
-from laglab_control.robot import RobotModel
+from laglab_control.robot import Ways
 
 STAND = np.zeros(2)
 """The input before any command is in force."""
@@ -88,14 +88,14 @@ class Flight(NamedTuple):
     """Where they lead."""
 
 
-def take_off(robot: RobotModel, command_delay: int) -> Flight:
+def take_off(robot: Ways, command_delay: int) -> Flight:
     """Before the first command."""
     nothing: SlidingProduct[Vector, Way] = SlidingProduct(joined, NOWHERE)
     flight = Flight(0, logged(), command_delay, Told(), logged(), nothing, NOWHERE)
     return _rebuilt(robot, flight)
 
 
-def send(robot: RobotModel, flight: Flight, u: Vector) -> tuple[Flight, Vector]:
+def send(robot: Ways, flight: Flight, u: Vector) -> tuple[Flight, Vector]:
     """With the command of this tick on its way; and the one that is in force until the next."""
     tick, sent, n, told, sums, in_flight, _ = flight
     sent, sums = append(sent, u, MEMORY), append(sums, _added(sums, u), MEMORY)
@@ -104,7 +104,7 @@ def send(robot: RobotModel, flight: Flight, u: Vector) -> tuple[Flight, Vector]:
 
 
 def hear(
-    robot: RobotModel,
+    robot: Ways,
     flight: Flight,
     echoes: Sequence[Echo],
     recalled: Sequence[Applied] = (),
@@ -160,7 +160,7 @@ def _found(told: Told, inputs: Sequence[Applied], tick: int) -> Told:
     return told._replace(missing=missing)
 
 
-def _rebuilt(robot: RobotModel, flight: Flight) -> Flight:
+def _rebuilt(robot: Ways, flight: Flight) -> Flight:
     in_flight = flight.in_flight.emptied()
     for u in _sent_since(flight, flight.tick - flight.command_delay):
         in_flight = in_flight.push(u, robot.way(u))

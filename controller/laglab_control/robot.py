@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
@@ -9,6 +10,14 @@ from laglab_control.angle import direction, wrap
 from laglab_control.limits import Positive, check, covariance
 from laglab_control.model import Matrix, Vector, identity
 from laglab_control.motion import Motion, Way, moved
+
+
+class Ways(Protocol):
+    """What tells where a robot gets."""
+
+    def way(self, u: Vector) -> Way:
+        """Where one tick with input u leads."""
+        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +63,7 @@ class RobotModel:
     def motion(self, u: Vector) -> Motion:
         """One tick of (3): g_k = (Ts v, 0, Ts omega), with W Q W^T as seen from the robot."""
         v, omega = u.tolist()
-        return Motion(self.sample_time * v, 0.0, self.sample_time * omega, *self._noise)
+        return Motion(self.sample_time * v, 0.0, self.sample_time * omega, *self.noise)
 
     def way(self, u: Vector) -> Way:
         """Where one tick of (3) leads."""
@@ -84,7 +93,7 @@ class RobotModel:
         return difference
 
     @cached_property
-    def _noise(self) -> tuple[float, ...]:
+    def noise(self) -> tuple[float, ...]:
         """The upper triangle of W Q W^T (32) at theta = 0: elsewhere it only turns."""
         W = self.W(np.zeros(3))
         return tuple((W @ self.Q @ W.T)[np.triu_indices(3)].tolist())

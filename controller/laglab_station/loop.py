@@ -46,6 +46,9 @@ class Onlooker:
     def answered(self, tick: int) -> None:
         """A tick is over for the station: nobody waits for it now."""
 
+    def close(self) -> None:
+        """The run is over."""
+
 
 def run_station(
     station: Station,
@@ -187,6 +190,5 @@ class _Loop:
 
     def _tell_of_keys(self) -> None:
         if refused := self._listener.refused:
-            text = f"{self._link.name}: {refused} frames refused: not signed with this key"
-            self._station.warn("keys", text)
+            self._station.warn("keys", refused)
             self._look_around()

@@ -10,6 +10,15 @@ class Alarm(Struct, frozen=True):
     cause: str
 
 
+class Calibrated(Struct, frozen=True):
+    """What is known of one parameter of the robot: of a wheel, by how much further it leads."""
+
+    name: str
+    value: float
+    deviation: float
+    """Standard deviation."""
+
+
 class StationReport(Struct, frozen=True):
     """How a station's run went."""
 
@@ -28,3 +37,5 @@ class StationReport(Struct, frozen=True):
     """All."""
     gated: int = 0
     """Measurements that were too wild to be used."""
+    calibration: tuple[Calibrated, ...] = ()
+    """What the estimator has learned of the robot at the end; most learn nothing."""

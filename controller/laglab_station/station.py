@@ -3,6 +3,7 @@
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import starmap
 
 import numpy as np
 
@@ -31,7 +32,7 @@ from laglab_station.alarms import Alarms
 from laglab_station.hearing import Came, echoes, measured, recalled
 from laglab_station.joining import Rest, observe, prior
 from laglab_station.recalling import Questions
-from laglab_station.report import StationReport
+from laglab_station.report import Calibrated, StationReport
 from laglab_station.saying import said
 
 LONGEST_GAP = MEMORY
@@ -131,6 +132,7 @@ class Station:
             alarms=tuple(self._alarms.told),
             alarms_raised=self._alarms.raised,
             gated=self._alarms.gated(self._controller, self._control),
+            calibration=tuple(starmap(Calibrated, self._controller.learned(self._control))),
         )
 
     def heartbeat(self) -> list[bytes]:

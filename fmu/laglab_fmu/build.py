@@ -68,12 +68,17 @@ def _for_macos(binaries: Mapping[Platform, bytes]) -> dict[Platform, bytes]:
 
 
 def _write_zip(path: Path, files: Mapping[str, bytes]) -> Path:
-    """Same files, same bytes: fixed dates, order, permissions and compression."""
-    with zipfile.ZipFile(path, "w") as archive:
-        for name in sorted(files):
-            entry = zipfile.ZipInfo(name, ZIP_DATE)
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            entry.create_system = 3
-            entry.external_attr = 0o644 << 16
-            archive.writestr(entry, files[name])
-    return path
+    """Same files, same bytes: fixed dates, order, permissions and compression. Whole or not at all:
+    what is there already may be in use."""
+    new = path.with_suffix(".new")
+    try:
+        with zipfile.ZipFile(new, "w") as archive:
+            for name in sorted(files):
+                entry = zipfile.ZipInfo(name, ZIP_DATE)
+                entry.compress_type = zipfile.ZIP_DEFLATED
+                entry.create_system = 3
+                entry.external_attr = 0o644 << 16
+                archive.writestr(entry, files[name])
+        return new.replace(path)
+    finally:
+        new.unlink(missing_ok=True)

@@ -1,6 +1,13 @@
 """The link: the dialect's messages, their frames, and the endpoints they travel between."""
 
-from laglab_protocol.endpoints import Address, Endpoint, Link, SerialPair, open_endpoint
+from laglab_protocol.endpoints import (
+    Address,
+    Endpoint,
+    Link,
+    SerialPair,
+    open_endpoint,
+    require_terminals,
+)
 from laglab_protocol.errors import (
     BadUrlError,
     DialectError,
@@ -146,5 +153,6 @@ __all__ = [
     "read_tlog",
     "refuse_open_door",
     "refuse_other_sample_time",
+    "require_terminals",
     "tlog_record",
 ]

@@ -10,7 +10,10 @@ from laglab_protocol.framing.receiver import Receiver
 STREAM_SILENCE = 0.05
 """[s] Bytes that follow each other on a serial line, however slow, come sooner than this."""
 
-ANOTHER_KEY = (Refusal.UNSIGNED, Refusal.BAD_SIGNATURE, Refusal.NO_KEY)
+KEYS = {
+    (Refusal.UNSIGNED, Refusal.BAD_SIGNATURE): "not signed with this key",
+    (Refusal.NO_KEY,): "they are signed, and here is no key to check that with",
+}
 
 
 class Listener:
@@ -48,7 +51,10 @@ class Listener:
         self._receiver.receive(b"", whole=True)
 
     @property
-    def refused(self) -> int:
-        """Frames not taken so far because of their signature: another key, or none."""
+    def refused(self) -> str:
+        """What was not taken so far because of its signature, in a line; empty when nothing was."""
         counts = self._receiver.counters.refused
-        return sum(counts.get(reason, 0) for reason in ANOTHER_KEY)
+        for reasons, why in KEYS.items():
+            if count := sum(counts.get(reason, 0) for reason in reasons):
+                return f"{self.link.name}: {count} frames refused: {why}"
+        return ""

@@ -2,14 +2,17 @@
 
 import signal
 import sys
+from typing import Annotated
 
 import typer
 
+from laglab import __version__
 from laglab.commands import (
     bench,
     compare,
     consistency,
     errata,
+    estimators,
     fmu,
     protocol,
     replay,
@@ -20,16 +23,40 @@ from laglab.commands import (
     sides,
     trust,
 )
-from laglab.commands.group import group
+from laglab.commands.group import alone, group
 from laglab.errors import LaglabError, RunError, ScenarioError
 from laglab.interrupts import INTERRUPTED, on_interrupt
 from laglab.output import guarded
 from laglab.runs.errors import LINK_LOST, SIDE_ERRORS
 
-app = group("A rehearsal rig for robots controlled across a network.")
+
+def _tell_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"laglab {__version__}")
+        raise typer.Exit
+
+
+VersionOption = Annotated[
+    bool,
+    typer.Option(
+        "--version", callback=_tell_version, is_eager=True, help="Say which laglab this is."
+    ),
+]
+
+
+def laglab(context: typer.Context, version: VersionOption = False) -> None:
+    """What stands before a command."""
+    del version  # told already
+    alone(context)
+
+
+app = group(
+    "A rehearsal rig for robots controlled across a network.", callback=laglab, completion=True
+)
 app.command("run")(run.run)
 app.command("replay")(replay.replay)
 app.command("scenarios")(scenarios.scenarios)
+app.command("estimators")(estimators.estimators)
 app.command("scenario")(scenario.scenario)
 app.command("compare")(compare.compare)
 app.command("consistency")(consistency.consistency)
@@ -57,7 +84,7 @@ def run_command(arguments: list[str] | None) -> int:
 def _exit_code(arguments: list[str] | None) -> int:
     try:
         on_interrupt(signal.default_int_handler)
-        code = int(app(arguments, standalone_mode=False) or 0)
+        code = int(app(arguments, prog_name="laglab", standalone_mode=False) or 0)
     except typer.TyperException as error:
         return _say(error.format_message(), error.exit_code)
     except LaglabError as error:
@@ -66,9 +93,16 @@ def _exit_code(arguments: list[str] | None) -> int:
         return _say(str(error), RunError.exit_code)
     except SIDE_ERRORS as error:
         return _say(str(error), ScenarioError.exit_code)
+    except OSError as error:
+        return _say(_of_the_system(error), RunError.exit_code)
     except (typer.Abort, KeyboardInterrupt):
         code = INTERRUPTED
     return _say("interrupted", code) if code == INTERRUPTED else code
+
+
+def _of_the_system(error: OSError) -> str:
+    """What a disk or a library said, where nobody had a better word for it."""
+    return f"{error.filename}: {error.strerror}" if error.filename else str(error)
 
 
 def _say(text: str, exit_code: int) -> int:

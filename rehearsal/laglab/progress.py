@@ -1,4 +1,4 @@
-"""Progress of long work, on standard error, where that is a terminal.
+"""Progress of long work, on standard error, where that is a terminal (or in a notebook).
 
 Shown when there is something new, not by a thread of its own: that would take the loop's time at
 any moment, and may hold a lock when Ctrl-C comes.
@@ -66,5 +66,5 @@ def _shown(*columns: ProgressColumn, transient: bool = False, shown: bool = True
         console=console,
         auto_refresh=False,
         transient=transient,
-        disable=not (shown and console.is_terminal),
+        disable=not (shown and (console.is_terminal or console.is_jupyter)),
     )

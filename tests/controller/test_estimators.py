@@ -99,7 +99,7 @@ def test_before_the_first_measurement_it_only_predicts(record, name):
         assert np.allclose(answer.covariances[k], P, atol=1e-16)
 
 
-@pytest.mark.parametrize("name", ["popf", "popf-exact", "delayed-ekf"])
+@pytest.mark.parametrize("name", ["popf", "popf-exact", "delayed-ekf", "calibrating-ekf"])
 @pytest.mark.parametrize("m", [0, 3, 20])
 def test_without_noise_the_estimate_is_exact_at_every_tick(simulate, name, m):
     record = simulate(name, m=m, ticks=500)

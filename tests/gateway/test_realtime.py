@@ -108,10 +108,26 @@ class Kept(Recorder):
         self.timings.append(row)
 
 
+class SlowPlant(StillPlant):
+    """Each step takes longer than a tick may."""
+
+    def __init__(self, link: SimulatedLink) -> None:
+        self._link = link
+
+    def step(self, v: float, omega: float) -> None:
+        del v, omega
+        self._link.time += 5 * PERIOD
+
+
 def run(
-    link: SimulatedLink, n: int, last_tick: int, silence: float = 3.0
+    link: SimulatedLink,
+    n: int,
+    last_tick: int,
+    silence: float = 3.0,
+    plant: StillPlant | None = None,
 ) -> tuple[Gateway, Kept, Outcome, TimingReport]:
-    gateway, kept = Gateway(StillPlant(), GatewayConfig(n, 0, last_tick, 0.01)), Kept()
+    config = GatewayConfig(n, 0, last_tick, 0.01)
+    gateway, kept = Gateway(plant or StillPlant(), config), Kept()
     listener = Listener(link, Receiver(), link.now)
     around = Surroundings(listener, kept, Patience(silence=silence), now=link.now)
     outcome, _, timing = serve_realtime(gateway, around, PERIOD)
@@ -162,6 +178,14 @@ def test_a_machine_that_cannot_keep_up_is_told_of() -> None:
     assert timing.missed_deadlines > 40
     assert max(row.lateness for row in kept.timings) > PERIOD
     assert len(kept.rows) == 101
+
+
+def test_a_station_that_answers_a_machine_far_behind_is_heard() -> None:
+    link = SimulatedLink(lambda _: 0.0, lambda: 0.0)
+    gateway, _, outcome, timing = run(link, 1, 100, plant=SlowPlant(link))
+    assert outcome == Outcome(EndReason.COMPLETED, 100)
+    assert timing.missed_deadlines == 100
+    assert gateway.audit.unanswered == 0
 
 
 def test_a_silent_station_ends_the_run() -> None:

@@ -63,6 +63,6 @@ def rehearsed(tmp_path: Path) -> Callable[..., dict[str, Any]]:
 
 
 @pytest.fixture
-def start(start: Start) -> Start:
+def start(start_program: Start) -> Start:
     """Start ``laglab ARGUMENTS`` in the background; whatever still runs at the end is ended."""
-    return partial(start, sys.executable, "-m", "laglab")
+    return partial(start_program, sys.executable, "-m", "laglab")

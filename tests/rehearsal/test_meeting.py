@@ -117,12 +117,24 @@ def test_each_side_alone_leaves_a_run(
     assert np.isnan(station_["x"]).all()
 
 
-def test_the_controller_says_what_it_waits_for(start: Start, free_port: int) -> None:
-    station = start("controller", "fig6", *there(str(free_port)))
-    assert station.stderr is not None
-    assert "waiting for the robot" in station.stderr.readline()
-    station.send_signal(signal.SIGINT)
-    assert ended(station, 130).splitlines()[-1] == "laglab: interrupted"
+@pytest.mark.parametrize(
+    ("side", "waits", "does"),
+    [
+        ("gateway", "udpin", "waiting for the controller, which calls there (udpout)"),
+        ("gateway", "udpout", "waiting for the controller, which listens there (udpin)"),
+        ("controller", "udpin", "waiting for the robot, which calls there (udpout)"),
+        ("controller", "udpout", "waiting for the robot, which listens there (udpin)"),
+    ],
+)
+def test_who_waits_says_for_whom_and_what_it_is_to_do(
+    start: Start, free_port: int, side: str, waits: str, does: str
+) -> None:
+    """Two sides that both listen, or both call, never meet."""
+    waiting = start(side, "fig6", "--endpoint", f"{waits}://127.0.0.1:{free_port}")
+    assert waiting.stderr is not None
+    assert does in waiting.stderr.readline()
+    waiting.send_signal(signal.SIGINT)
+    assert ended(waiting, 130).splitlines()[-1] == "laglab: interrupted"
 
 
 @pytest.fixture

@@ -25,7 +25,7 @@ NOT_NEGATIVE = st.floats(0, 1e300)
 PROBABILITY = st.floats(0, 1)
 SHARE = st.floats(-1, 1, exclude_min=True, exclude_max=True)
 TEXT = st.text(st.characters(exclude_categories=["Cs"]), max_size=30)
-TICKS = st.integers(0, 10**6)
+TICKS = st.integers(0, 65534)
 
 
 def table(keys: Keys) -> st.SearchStrategy[dict[str, Any]]:

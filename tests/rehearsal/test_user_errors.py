@@ -1,5 +1,6 @@
 """Whatever the user got wrong is one line that names it, exit 2, and no traceback."""
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -8,9 +9,17 @@ from laglab.command import main
 
 WRONG = [
     (["run", "fig9"], "fig9: no such scenario"),
+    (["run", "x" * 300], "File name too long"),
+    (["run", "x\0y"], "embedded null byte"),
     (["run", "fig6", "-n", "-1"], "command_delay"),
     (["run", "fig6", "-m", "-3"], "measurement_delay"),
     (["run", "fig6", "-m", "some"], "'-m'"),
+    (["run", "fig6", "-m", "65535"], "link.measurement_delay: must be below 65535, not 65535"),
+    (["run", "fig6", "-n", "9" * 30], "link.command_delay: must be below 65535"),
+    (["run", "fig6", "--set", f"start={'[' * 3000}"], "is no TOML value: nested too deeply"),
+    (["run", "fig6", "--timeline", "/dev/null"], "a timeline is a list of [[event]] tables"),
+    (["run", "fig6", "--timeline", sys.executable], "nor the link.csv of a run"),
+    (["run", "fig6", "--timeline", "/"], "--timeline /: Is a directory"),
     (["run", "fig6", "--start", "1,2"], "start"),
     (
         ["run", "fig6", "--start", "1,2,east"],
@@ -35,6 +44,9 @@ WRONG = [
     (["run", "fig6", "--set", "start.x=1"], "fig6: start.x: must be the number of an element"),
     (["run", "fig6", "--set", "seed=1", "--set", "seed.x=1"], "fig6: seed: must be a table to"),
     (["gateway", "fig6", "--endpoint", "smoke://signals"], "smoke"),
+    (["gateway", "fig6", "--endpoint", "udpin://a..b:1"], "no such host 'a..b'"),
+    (["controller", "fig6", "--endpoint", f"udpout://{'a' * 70}:1"], "no such host"),
+    (["conform", "smoke://signals", "--side", "robot"], "smoke"),
     (["controller", "fig6", "--endpoint", "serial:///dev/ttyNONE9:57600"], "/dev/ttyNONE9"),
     (["run", "lab", "--transport", "inline", "--plant", "pty://p"], "--plant: a real robot does"),
     (["gateway", "lab", "--plant", "/dev/ttyNONE9,57600"], "/dev/ttyNONE9"),
@@ -106,6 +118,7 @@ BROKEN_FILES = {
     "plant.measurement_variance = [0.0, 0.1, 0.1]": "plant.measurement_variance: must be three "
     "variances above 0, of x, y and theta, not [0.0, 0.1, 0.1]",
     "safety.ramp = -1.0": "safety.ramp: must be 0 or more, not -1.0",
+    f"seed = {'[' * 3000}": "not a readable TOML file: nested too deeply",
     f"seed = 1{'0' * 5000}": "not a readable TOML file",
     f"name = [{'1,' * 5000}]": "name: must be text, not [1, 1, 1",
 }

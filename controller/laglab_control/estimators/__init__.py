@@ -1,19 +1,24 @@
 """Estimators: pure functions over immutable states, each line under the paper's equation."""
 
+from laglab_control.estimators.calibrating_ekf import CalibratingEkf
 from laglab_control.estimators.delayed_ekf import DelayedEkf
 from laglab_control.estimators.ekf import Ekf
 from laglab_control.estimators.family import ESTIMATORS, EstimatorKind, estimator_kind
-from laglab_control.estimators.interface import Applied, Estimator, Measured, State
+from laglab_control.estimators.interface import Applied, Calibration, Estimator, Measured, State
 from laglab_control.estimators.kalman import Innovation
+from laglab_control.estimators.parameters import Parameters, Taken
 from laglab_control.estimators.popf import Popf
 from laglab_control.estimators.popf_exact import PopfExact
 from laglab_control.estimators.popf_literal import LiteralPopf
 from laglab_control.estimators.rewinding import Rewinding
+from laglab_control.estimators.wheel_scales import WheelScales
 from laglab_control.estimators.windows import ReplayedInputs, RigidMotions
 
 __all__ = [
     "ESTIMATORS",
     "Applied",
+    "CalibratingEkf",
+    "Calibration",
     "DelayedEkf",
     "Ekf",
     "Estimator",
@@ -21,11 +26,14 @@ __all__ = [
     "Innovation",
     "LiteralPopf",
     "Measured",
+    "Parameters",
     "Popf",
     "PopfExact",
     "ReplayedInputs",
     "Rewinding",
     "RigidMotions",
     "State",
+    "Taken",
+    "WheelScales",
     "estimator_kind",
 ]

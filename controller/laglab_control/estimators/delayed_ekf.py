@@ -78,8 +78,8 @@ class DelayedEkf(Estimator[DelayedState[W]]):
     def predict(self, state: DelayedState[W], u: Vector) -> DelayedState[W]:
         """One more input in the window; unmeasured, the EKF follows `memory` ticks behind."""
         tick = state.tick + 1
-        window = state.window.push(u, self.windows.over(u))
-        predicted = DelayedState(tick, state.filtered, window, self.windows)
+        window = state.window.push(u, state.windows.over(u))
+        predicted = DelayedState(tick, state.filtered, window, state.windows)
         return self._advance(predicted, tick - self.memory, None, {})
 
     def correct(
@@ -101,9 +101,9 @@ class DelayedEkf(Estimator[DelayedState[W]]):
             state = self._advance(state, s, z, known)
         window = self._put_right(state, known)
         if not measurements:
-            return DelayedState(state.tick, state.filtered, window, self.windows)
+            return DelayedState(state.tick, state.filtered, window, state.windows)
         innovation = _innovation(state.filtered, measurements[-1].tick)
-        return DelayedState(state.tick, state.filtered, window, self.windows, innovation)
+        return DelayedState(state.tick, state.filtered, window, state.windows, innovation)
 
     def innovation(self, state: DelayedState[W]) -> Innovation | None:
         """z_s - h(x^-_s), with the prior that the EKF has at s by now."""
@@ -121,7 +121,7 @@ class DelayedEkf(Estimator[DelayedState[W]]):
             u, window = window.pop()
             tick += 1
             filtered = self._extend(filtered, known.get(tick, u), z if tick == s else None)
-        return DelayedState(state.tick, filtered, window, self.windows)
+        return DelayedState(state.tick, filtered, window, state.windows)
 
     def _put_right(
         self, state: DelayedState[W], known: Mapping[int, Vector]
@@ -134,7 +134,7 @@ class DelayedEkf(Estimator[DelayedState[W]]):
         window = state.window.emptied()
         for tick, u in enumerate(state.window, start=newest + 1):
             right = known.get(tick, u)
-            window = window.push(right, self.windows.over(right))
+            window = window.push(right, state.windows.over(right))
         return window
 
     def _extend(self, filtered: Log[Filtered], u: Vector, z: Vector | None) -> Log[Filtered]:
@@ -161,7 +161,7 @@ class DelayedEkf(Estimator[DelayedState[W]]):
                 filtered = logged(self._corrected(past.tick, u, past.prior, z))
             else:
                 filtered = self._extend(filtered, u, z)
-        return DelayedState(state.tick, filtered, state.window, self.windows)
+        return DelayedState(state.tick, filtered, state.window, state.windows)
 
 
 def _innovation(filtered: Log[Filtered], s: int) -> Innovation | None:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from laglab_control.errors import ConfigError
+from laglab_control.estimators.calibrating_ekf import CalibratingEkf
 from laglab_control.estimators.delayed_ekf import DelayedEkf
 from laglab_control.estimators.ekf import Ekf
 from laglab_control.estimators.interface import Estimator
@@ -11,6 +12,7 @@ from laglab_control.estimators.popf import Popf
 from laglab_control.estimators.popf_exact import PopfExact
 from laglab_control.estimators.raw import Raw
 from laglab_control.estimators.rewinding import Rewinding
+from laglab_control.estimators.wheel_scales import WheelScales
 from laglab_control.estimators.windows import RigidMotions
 from laglab_control.robot import RobotModel
 
@@ -49,6 +51,10 @@ ESTIMATORS: Mapping[str, EstimatorKind] = {
     "delayed-ekf": EstimatorKind(
         "the optimum: an EKF at the measurement's tick, carried forward over the known inputs",
         lambda model: DelayedEkf(model, RigidMotions(model)),
+    ),
+    "calibrating-ekf": EstimatorKind(
+        "delayed-ekf that learns how far each wheel leads, besides the pose",
+        lambda model: CalibratingEkf(model, WheelScales(model.track)),
     ),
 }
 

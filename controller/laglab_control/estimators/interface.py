@@ -6,6 +6,7 @@ from typing import NamedTuple, Protocol, TypeVar
 from laglab_control.errors import StampError
 from laglab_control.estimators.kalman import Innovation
 from laglab_control.model import Matrix, Vector
+from laglab_control.robot import Ways
 
 
 class Applied(NamedTuple):
@@ -20,6 +21,15 @@ class Measured(NamedTuple):
 
     tick: int
     z: Vector
+
+
+class Calibration(NamedTuple):
+    """What is known of one parameter of the robot."""
+
+    name: str
+    value: float
+    deviation: float
+    """Standard deviation."""
 
 
 def by_sampling(measurements: Sequence[Measured], k: int) -> Sequence[Measured]:
@@ -90,6 +100,14 @@ class Estimator(Protocol[S]):
         Any other may come as well. Nothing can be prepared by those that say nothing else.
         """
         return state
+
+    def calibrated(self, state: S, robot: Ways) -> Ways:
+        """The robot as it is known by now: the one that was told, of those that learn nothing."""
+        return robot
+
+    def learned(self, state: S) -> tuple[Calibration, ...]:
+        """What is known by now of the robot besides its pose; of most estimators nothing."""
+        return ()
 
     def innovation(self, state: S) -> Innovation | None:
         """Of the newest measurement that the last `correct` was given, as the estimator saw it;

@@ -78,17 +78,19 @@ def correct(model: Model, prior: Belief, z: Vector) -> Corrected:
     K = gain(PHt, S)
     B = identity(len(x)) - K.dot(H)
     v = model.innovation(z, model.h(x))
-    P = _sound(symmetric(B.dot(P).dot(B.T) + K.dot(R).dot(K.T)))
+    P = _sound(symmetric(B.dot(P).dot(B.T) + K.dot(R).dot(K.T)), H)
     return Corrected(Belief(x + K.dot(v), P), Innovation(v, S))
 
 
-def _sound(P: Matrix) -> Matrix:
+def _sound(P: Matrix, H: Matrix) -> Matrix:
     """P, or where rounding has cost it its definiteness the nearest covariance.
 
     Joseph's form keeps P positive definite while R is; with a perfect sensor some of P is nothing
-    but rounding errors after a while.
+    but rounding errors after a while. What is left of x once H x is known does not change, so it
+    is enough to look at H x.
     """
-    if _is_definite(P) or not np.all(np.isfinite(P)):
+    measured = P if len(H) == len(P) else H.dot(P).dot(H.T)
+    if _is_definite(measured) or not np.all(np.isfinite(P)):
         return P
     values, vectors = np.linalg.eigh(P)
     return symmetric((vectors * np.maximum(values, 0)) @ vectors.T)

@@ -45,7 +45,7 @@ class RewindingState(NamedTuple, Generic[S]):
 
 
 @dataclass(frozen=True)
-class Rewinding(Generic[S]):
+class Rewinding(Estimator[RewindingState[S]]):
     """Goes back to the first input that was wrong, and runs `estimator` again from there.
 
     The answer is that of an estimator that had known the inputs, and got its measurements when

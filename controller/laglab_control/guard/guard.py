@@ -10,14 +10,21 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from laglab_control.estimators.delayed_ekf import DelayedEkf, DelayedState
-from laglab_control.estimators.interface import Applied, Estimator, Measured, State, by_sampling
+from laglab_control.estimators.interface import (
+    Applied,
+    Calibration,
+    Estimator,
+    Measured,
+    State,
+    by_sampling,
+)
 from laglab_control.estimators.kalman import Belief, Innovation, normalised_squared
 from laglab_control.estimators.windows import RigidMotions
 from laglab_control.guard.evidence import WILD, Evidence, contradiction, no_evidence, weighed
 from laglab_control.guard.seen import Seen
 from laglab_control.model import Matrix, Vector
 from laglab_control.past.log import Log, append, logged
-from laglab_control.robot import RobotModel
+from laglab_control.robot import RobotModel, Ways
 
 LOCATING = 100
 """Measurements by which the pose is found again: P is then R/100, which every filter can start
@@ -121,6 +128,14 @@ class Guard(Estimator[Watched]):
         inner = self._active(state).expect(state.state, s - state.origin)
         return state if inner is state.state else state._replace(state=inner)
 
+    def calibrated(self, state: Watched, robot: Ways) -> Ways:
+        """The estimator's own, also while it is given up."""
+        return self.estimator.calibrated(_own(state), robot)
+
+    def learned(self, state: Watched) -> tuple[Calibration, ...]:
+        """The estimator's own, also while it is given up."""
+        return self.estimator.learned(_own(state))
+
     def innovation(self, state: Watched) -> Innovation | None:
         """The estimator's own."""
         return self._active(state).innovation(state.state)
@@ -210,3 +225,8 @@ class Guard(Estimator[Watched]):
         for u in items[length - (tick - origin) : length]:
             inner = active.predict(inner, u)
         return state._replace(state=inner, origin=origin)
+
+
+def _own(state: Watched) -> State:
+    """The estimator's, as of now or of when it was given up."""
+    return state.state if state.aside is None else state.aside

@@ -170,9 +170,7 @@ class Conversation:
     def _tell_of_keys(self) -> None:
         if (refused := self._listener.refused) and "keys" not in self._told:
             self._told.add("keys")
-            self._around.warn(
-                f"{self._link.name}: {refused} frames refused: not signed with this key"
-            )
+            self._around.warn(refused)
 
     def _look_around(self) -> None:
         """Say what was announced, and look after those who watch."""

@@ -49,10 +49,14 @@ def serve_realtime(gateway: Gateway, around: Surroundings, period: float) -> Ser
 
 
 def _listen_until(deadline: float, gateway: Gateway, conversation: Conversation) -> float | None:
-    """Take what arrives before the deadline; when this tick's answer came, if it did."""
+    """Take what arrives before the deadline, and what has arrived when that is over already; when
+    this tick's answer came, if it did."""
     answered = None
-    while (left := deadline - conversation.now()) > 0:
-        conversation.listen(left)
+    left = deadline - conversation.now()
+    while True:
+        conversation.listen(max(left, 0))
         if answered is None and gateway.answered:
             answered = conversation.now()
-    return answered
+        left = deadline - conversation.now()
+        if left <= 0:
+            return answered

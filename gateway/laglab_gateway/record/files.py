@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterable
-from contextlib import ExitStack
+from contextlib import suppress
 from io import FileIO
 from pathlib import Path
 from typing import Generic, TypeVar
@@ -36,15 +36,13 @@ class _File(Generic[R]):
         self._write(header)
 
     def flush(self) -> None:
-        if self.waiting:
-            waiting, self.waiting = self.waiting, []
+        waiting, self.waiting = self.waiting, []
+        if waiting and not self._file.closed:
             self._write(b"".join(map(self._encode, waiting)))
 
-    def close(self) -> None:
-        try:
-            self.flush()
-        finally:
-            self._file.close()
+    def give_up(self) -> None:
+        """From now on what is to be written is dropped."""
+        self._file.close()
 
     def _write(self, data: bytes) -> None:
         """All of it or nothing: what found no room is cut off again."""
@@ -61,7 +59,7 @@ class _File(Generic[R]):
         self._size += len(data)
 
     def _cut_back(self) -> None:
-        if self._file.seekable():
+        with suppress(OSError):  # of a pipe, or of a device
             os.ftruncate(self._file.fileno(), self._size)
 
 
@@ -77,7 +75,8 @@ class FileRecorder(Recorder):
     """Writes `trace.csv` and `robot.tlog` into a directory; `link.csv` and `timing.csv` if any.
 
     Kept until `flush`, then all of a file's records go there in one unbuffered write: a process
-    killed at any moment leaves whole rows and whole records, up to the last flush.
+    killed at any moment leaves whole rows and whole records, up to the last flush. Once one of the
+    files cannot be written nothing more is recorded.
     """
 
     def __init__(self, directory: Path) -> None:
@@ -116,16 +115,22 @@ class FileRecorder(Recorder):
 
     def flush(self) -> None:
         """Write all that has been kept."""
-        self._trace.flush()
-        self._tlog.flush()
-        if self._link:
-            self._link.flush()
-        if self._timing:
-            self._timing.flush()
+        try:
+            for file in self._files:
+                file.flush()
+        except TraceError:
+            for file in self._files:
+                file.give_up()
+            raise
 
     def close(self) -> None:
         """Write the rest, and close all files."""
-        with ExitStack() as stack:
-            for file in (self._trace, self._tlog, self._link, self._timing):
-                if file:
-                    stack.callback(file.close)
+        try:
+            self.flush()
+        finally:
+            for file in self._files:
+                file.give_up()
+
+    @property
+    def _files(self) -> "list[_File[Row] | _File[tuple[int, bytes]]]":
+        return [file for file in (self._trace, self._tlog, self._link, self._timing) if file]

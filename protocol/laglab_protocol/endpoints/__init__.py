@@ -2,6 +2,7 @@
 
 from laglab_protocol.endpoints.interface import Address, Endpoint, Link
 from laglab_protocol.endpoints.pair import SerialPair
+from laglab_protocol.endpoints.terminals import require_terminals
 from laglab_protocol.endpoints.url import open_endpoint
 
-__all__ = ["Address", "Endpoint", "Link", "SerialPair", "open_endpoint"]
+__all__ = ["Address", "Endpoint", "Link", "SerialPair", "open_endpoint", "require_terminals"]

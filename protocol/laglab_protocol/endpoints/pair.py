@@ -6,7 +6,8 @@ from contextlib import ExitStack
 from time import monotonic
 from typing import Self
 
-from laglab_protocol.endpoints.tty import Pty
+from laglab_protocol.endpoints.interface import Endpoint
+from laglab_protocol.endpoints.terminals import make_pty
 from laglab_protocol.endpoints.wire import Wire
 from laglab_protocol.errors import PortBusyError
 
@@ -14,7 +15,7 @@ from laglab_protocol.errors import PortBusyError
 class Lane:
     """From the program at one port to the program at the other."""
 
-    def __init__(self, source: Pty, destination: Pty, baud: int) -> None:
+    def __init__(self, source: Endpoint, destination: Endpoint, baud: int) -> None:
         self.source = source
         self.destination = destination
         self.carried = 0
@@ -49,7 +50,7 @@ class SerialPair:
         if path_1 == path_2:
             raise PortBusyError(f"{path_1}: two ports need two paths: choose another for one")
         with ExitStack() as stack:
-            first, second = (stack.enter_context(Pty(path)) for path in (path_1, path_2))
+            first, second = (stack.enter_context(make_pty(path)) for path in (path_1, path_2))
             self._ports = stack.pop_all()
         self.lanes = (Lane(first, second, baud), Lane(second, first, baud))
 

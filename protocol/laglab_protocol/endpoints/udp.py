@@ -11,6 +11,8 @@ from laglab_protocol.endpoints.waiting import first_bytes
 from laglab_protocol.errors import EndpointError, NoSuchPortError, PortBusyError
 
 LARGEST_DATAGRAM = 65535
+NOBODY_THERE = (ConnectionRefusedError, ConnectionResetError)
+"""As Linux and as Windows say it, on the next call, of a datagram that found nobody."""
 
 
 class _Udp(ABC):
@@ -22,6 +24,7 @@ class _Udp(ABC):
         self._scheme = scheme
         family, self._address = _resolve(scheme, host, port)
         self._socket = socket.socket(family, socket.SOCK_DGRAM)
+        self._socket.setblocking(False)
 
     @property
     def name(self) -> str:
@@ -79,14 +82,16 @@ class UdpIn(_Udp):
         if address is not None:
             try:
                 self._socket.sendto(data, address)
+            except BlockingIOError:
+                return  # no room: lost, as on any way
             except OSError as error:
                 where = f"{address[0]}:{address[1]}"
                 raise _cannot(f"send to {where} from", self.name, error) from error
 
     def _read(self) -> bytes | None:
         try:
-            data, self.sender = self._socket.recvfrom(LARGEST_DATAGRAM, socket.MSG_DONTWAIT)
-        except BlockingIOError:
+            data, self.sender = self._socket.recvfrom(LARGEST_DATAGRAM)
+        except (BlockingIOError, *NOBODY_THERE):
             return None
         return data
 
@@ -109,7 +114,9 @@ class UdpOut(_Udp):
         del to  # there is only one far end
         try:
             self._socket.send(data)
-        except ConnectionRefusedError:
+        except BlockingIOError:
+            return  # no room: lost, as on any way
+        except NOBODY_THERE:
             self._send_again(data)
         except OSError as error:
             raise _cannot("send to", self.name, error) from error
@@ -118,22 +125,22 @@ class UdpOut(_Udp):
         """The refusal belonged to an earlier datagram, and this one was not sent."""
         try:
             self._socket.send(data)
-        except ConnectionRefusedError:
+        except (BlockingIOError, *NOBODY_THERE):
             return
         except OSError as error:
             raise _cannot("send to", self.name, error) from error
 
     def _read(self) -> bytes | None:
         try:
-            return self._socket.recv(LARGEST_DATAGRAM, socket.MSG_DONTWAIT)
-        except (BlockingIOError, ConnectionRefusedError):
+            return self._socket.recv(LARGEST_DATAGRAM)
+        except (BlockingIOError, *NOBODY_THERE):
             return None  # a refusal means that an earlier datagram found nobody; it is used up
 
 
 def _resolve(scheme: str, host: str, port: int) -> tuple[socket.AddressFamily, Any]:
     try:
         found = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)
-    except OSError as error:
+    except (OSError, UnicodeError) as error:  # no name at all, as far as encodings go
         raise NoSuchPortError(
             f"{scheme}://{host}:{port}: no such host {host!r}: give a name or address known here"
         ) from error

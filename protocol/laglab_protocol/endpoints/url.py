@@ -7,7 +7,7 @@ pty://PATH
 """
 
 from laglab_protocol.endpoints.interface import Endpoint
-from laglab_protocol.endpoints.tty import Pty, SerialPort
+from laglab_protocol.endpoints.terminals import make_pty, open_port
 from laglab_protocol.endpoints.udp import UdpIn, UdpOut
 from laglab_protocol.errors import BadUrlError
 
@@ -26,13 +26,13 @@ def open_endpoint(url: str) -> Endpoint:
         case "udpout":
             return UdpOut(*_host_and_port(url, rest))
         case "serial":
-            return SerialPort(*_device_and_baud(url, rest, ":"))
+            return open_port(url, *_device_and_baud(url, rest, ":"))
         case "device":
-            return SerialPort(*_device_and_baud(url, rest, ","))
+            return open_port(url, *_device_and_baud(url, rest, ","))
         case "pty":
             if not rest:
                 raise BadUrlError(f"{url!r}: no path: write pty://PATH")
-            return Pty(rest)
+            return make_pty(rest)
     raise BadUrlError(f"{url!r}: unknown kind {scheme!r}: write {SPELLINGS}")
 
 

@@ -3,11 +3,13 @@
 import os
 import select
 from collections.abc import Callable
-from time import monotonic
+from time import monotonic, sleep
 
 POLLED = 5e-4
 """[s] Waking a sleeper takes a tenth of a millisecond, longer than the far end may take to answer:
 so the beginning of a wait is polled, and its end, in order to be in time for the deadline."""
+
+_yield: Callable[[], None] = getattr(os, "sched_yield", lambda: sleep(0.0))
 
 
 def first_bytes(read: Callable[[], bytes | None], descriptor: int, timeout: float) -> bytes:
@@ -26,7 +28,7 @@ def first_bytes(read: Callable[[], bytes | None], descriptor: int, timeout: floa
 
 def _poll(read: Callable[[], bytes | None], until: float) -> bytes | None:
     while (data := read()) is None and monotonic() < until:
-        os.sched_yield()  # the far end may be waiting for this very processor
+        _yield()  # the far end may be waiting for this very processor
     return data
 
 

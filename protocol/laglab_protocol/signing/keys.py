@@ -5,6 +5,7 @@ import json
 import os
 import secrets
 import stat
+from contextlib import suppress
 from pathlib import Path
 
 from laglab_protocol.endpoints import Endpoint
@@ -31,8 +32,12 @@ def make_key(path: Path) -> None:
         descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     except OSError as error:
         raise KeyFileError(f"cannot make the key {path}: {error.strerror}") from error
-    with os.fdopen(descriptor, "w") as file:
-        file.write(secrets.token_hex(KEY_SIZE) + "\n")
+    try:
+        with os.fdopen(descriptor, "w") as file:
+            file.write(secrets.token_hex(KEY_SIZE) + "\n")
+    except OSError as error:
+        path.unlink()
+        raise KeyFileError(f"cannot make the key {path}: {error.strerror}") from error
 
 
 def read_key(path: Path) -> bytes:
@@ -46,7 +51,7 @@ def read_key(path: Path) -> bytes:
         raise KeyFileError(f"{path} is no key: it must hold 64 hexadecimal digits") from error
     if len(key) != KEY_SIZE:
         raise KeyFileError(f"{path} is no key: {len(key)} bytes instead of {KEY_SIZE}")
-    if mode & (stat.S_IRWXG | stat.S_IRWXO):
+    if os.name == "posix" and mode & (stat.S_IRWXG | stat.S_IRWXO):  # elsewhere it says nothing
         raise KeyFileError(f"others may read the key {path}: run chmod 600 on it, or make another")
     return key
 
@@ -78,9 +83,11 @@ class StoredTimestamps(Timestamps):
         return timestamp + AHEAD
 
     def close(self) -> None:
-        """From here on the file is exact."""
+        """From here on the file is exact, or where it cannot be written still ahead: no less
+        safe, and for a second a restarted side is refused."""
         self._written = self.last
-        self._write()
+        with suppress(KeyFileError):
+            self._write()
 
     def _write(self) -> None:
         named = {"/".join(map(str, stream)): value for stream, value in self._written.items()}

@@ -8,7 +8,6 @@ is no repeat after a loss, no check of who speaks, no log of frames, no failsafe
 import csv
 import importlib
 import os
-import tty
 from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -155,6 +154,8 @@ def _robot_link(mavutil: Any, over: str) -> Iterator[tuple[Any, str]]:
         yield link, f"udpout:{host}:{port}"
         link.close()
         return
+    import tty  # not every system has it
+
     mavutil.set_dialect("laglab")
     master, slave = os.openpty()
     tty.setraw(slave)

@@ -28,7 +28,7 @@ from laglab_control import (
 
 Array = NDArray[np.float64]
 
-OURS = ("ekf", "popf", "popf-exact", "delayed-ekf")
+OURS = ("ekf", "popf", "popf-exact", "delayed-ekf", "calibrating-ekf")
 FILTERPY = "filterpy's EKF"
 GUARDED = "delayed-ekf, guarded"
 STANDING = Law(v_max=1e-9, omega_max=1e-9)

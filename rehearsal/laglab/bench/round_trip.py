@@ -2,7 +2,6 @@
 
 import os
 import socket
-import tty
 from collections.abc import Callable
 from queue import Queue
 from time import perf_counter
@@ -80,6 +79,8 @@ def udp_station(order: EchoOrder, _: Tell) -> None:
 
 
 def _over_pty(sizes: Sizes, ticks: int) -> float:
+    import tty  # not every system has it
+
     robot, slave = os.openpty()
     tty.setraw(slave)
     try:

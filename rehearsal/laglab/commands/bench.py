@@ -1,6 +1,7 @@
 """`laglab bench`: ratios, measured side by side in one run."""
 
 from contextlib import ExitStack
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -13,17 +14,14 @@ from laglab.bench.round_trip import Link
 from laglab.commands.group import group
 from laglab.extras import STEPPING, require
 from laglab.progress import status
+from laglab.results.whole import whole_file
+from laglab.results.writable import file_place
+from laglab_protocol import require_terminals
 
 RoundsOption = Annotated[int, typer.Option("--rounds", min=1, help="Turns of each contender.")]
 JsonOption = Annotated[
-    typer.FileTextWrite | None,
-    typer.Option(
-        "--json",
-        metavar="FILE",
-        encoding="utf-8",
-        lazy=False,
-        help="Write what was measured here too.",
-    ),
+    Path | None,
+    typer.Option("--json", metavar="FILE", help="Write what was measured here too."),
 ]
 TicksOption = Annotated[int, typer.Option("--ticks", min=10, help="Ticks of each turn.")]
 
@@ -37,7 +35,7 @@ def fmu(
     rounds: RoundsOption = 5,
     json: JsonOption = None,
 ) -> None:
-    """One step of the FMU: ours, FMPy's two ways, the fleet per robot, a plain C loop."""
+    """A step of the FMU: ours, FMPy's two ways, the fleet, plain C."""
     require(STEPPING)
     from laglab.bench import fmu as fmu_bench  # needs FMPy
 
@@ -47,14 +45,14 @@ def fmu(
 
 @app.command("codec")
 def codec(rounds: RoundsOption = 100, json: JsonOption = None) -> None:
-    """Encode and decode, signed and not: our codec, pymavlink's, and mavgen's C."""
+    """Encode and decode: our codec, pymavlink's, and mavgen's C."""
     with ExitStack() as stack:
         _run(codec_bench.bench(stack), rounds, json)
 
 
 @app.command("filter")
 def filter_(ticks: TicksOption = 1000, rounds: RoundsOption = 8, json: JsonOption = None) -> None:
-    """What a tick of each filter costs at m + n = 4, 40 and 400, beside filterpy's EKF."""
+    """A tick of each filter by its delays, beside filterpy's EKF."""
     _run(filter_bench.bench(ticks), rounds, json)
 
 
@@ -66,17 +64,22 @@ def loop(
     rounds: RoundsOption = 9,
     json: JsonOption = None,
 ) -> None:
-    """The lock-step loop over UDP and a pty, against a bare echo and against one by hand."""
+    """The lock-step loop, against a bare echo and one by hand."""
     require(STEPPING)
     from laglab.bench import loop as loop_bench  # needs FMPy
 
     links = (link,) if link else loop_bench.LINKS
+    if "serial" in links:
+        require_terminals("--link serial")
     _run(loop_bench.bench(ticks, realtime, links), rounds, json)
 
 
-def _run(what: bench.Bench, rounds: int, json: typer.FileTextWrite | None) -> None:
+def _run(what: bench.Bench, rounds: int, json: Path | None) -> None:
+    if json:
+        file_place("--json", json)
     with status() as tell:
         report = bench.run(what, rounds, tell)
     bench.show(report, Console())
     if json:
-        json.write(report.to_json())
+        with whole_file(json) as file:
+            file.write(report.to_json().encode())

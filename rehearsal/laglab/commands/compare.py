@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from laglab.extras import DRAWING, require
-from laglab.results.figure import draw_side_by_side, save
+from laglab.results.figure import draw_side_by_side, picture_place, save
 from laglab.results.run import open_run
 
 
@@ -18,6 +18,7 @@ def compare(
 ) -> None:
     """Draw several runs in one picture, a row each."""
     require(DRAWING)
+    picture_place(out)
     opened = [open_run(directory) for directory in runs]
     save(draw_side_by_side([(run.drawn, run.scenario, run.alarms) for run in opened]), out)
     print(out)

@@ -1,6 +1,7 @@
 """``laglab consistency``."""
 
 import os
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -11,49 +12,64 @@ from laglab.commands.options import on_scenario
 from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, require
 from laglab.progress import tracked
-from laglab.results.figure import save
+from laglab.results.figure import picture_place, save
 from laglab.scenario import Scenario
+from laglab.scenario.tables.estimator import COMPARABLE
 from laglab.studies.consistency import nth, samples, verdict
 from laglab.studies.consistency_report import consistency_table, draw_consistency
-from laglab_control import ESTIMATORS
 
 JUDGED = ("ekf", "popf", "popf-exact", "delayed-ekf")
-TABLE_WIDTH = 100
-"""Columns that the table takes; a narrower terminal wraps it, but shows it whole."""
+MOST_SEEDS = 10_000
+"""All that each of them gives is kept in memory: half a megabyte and more."""
 
 
-@on_scenario
+@partial(on_scenario, by_default="lab")
 def consistency(
     scenario: Scenario,
-    seeds: Annotated[int, typer.Option(min=2, help="Runs, each with noise of its own.")] = 50,
+    seeds: Annotated[
+        int, typer.Option(min=2, max=MOST_SEEDS, help="Runs, each with noise of its own.")
+    ] = 50,
     judged: Annotated[
-        list[str] | None, typer.Option("--judge", metavar="NAME", help="A filter to judge.")
+        list[str] | None,
+        typer.Option(
+            "--judge",
+            metavar="NAME",
+            help=f"A filter to judge; may be repeated: {', '.join(COMPARABLE)}.",
+            autocompletion=lambda: COMPARABLE,
+        ),
     ] = None,
-    workers: Annotated[int, typer.Option(min=0, help="Processes; 0: one a core.")] = 0,
+    workers: Annotated[int, typer.Option(min=0, max=256, help="Processes; 0: one a core.")] = 0,
     out: Annotated[Path, typer.Option("--out", metavar="FILE", help="The picture.")] = Path(
         "consistency.png"
     ),
 ) -> None:
-    """Compare the covariance that each filter claims with the errors it makes, over many seeds.
+    """Hold what each filter claims against its errors, over seeds.
 
     The loop runs with the scenario's filter; all filters are judged on its records.
     """
     require(REHEARSING)
+    picture_place(out)
     names = [_known(name) for name in judged or JUDGED]
-    nth(scenario, seeds - 1)  # is there such a seed?
+    _check(scenario, seeds)
     runs = samples(scenario, names, seeds, workers or os.cpu_count() or 1)
     got = list(tracked(runs, seeds, "consistency", "seed"))
     m = scenario.link.measurement_delay
     verdicts = [verdict(name, [sample[name] for sample in got], m) for name in names]
     console = Console()
-    console.width = max(console.width, TABLE_WIDTH)
     console.print(consistency_table(scenario, verdicts, seeds))
     save(draw_consistency(scenario, verdicts), out)
     console.print(f"picture in {out}", highlight=False)
 
 
+def _check(scenario: Scenario, seeds: int) -> None:
+    """Raises: ScenarioError, when there is nothing to judge, or not so many seeds."""
+    m = scenario.link.measurement_delay
+    if scenario.must_end() < m:
+        raise ScenarioError(f"{scenario.name}: the run is over before a measurement has arrived")
+    nth(scenario, seeds - 1)
+
+
 def _known(name: str) -> str:
-    if name not in ESTIMATORS or not ESTIMATORS[name].predicts:
-        known = ", ".join(name for name, kind in ESTIMATORS.items() if kind.predicts)
-        raise ScenarioError(f"--judge: {name!r} is not one of {known}")
+    if name not in COMPARABLE:
+        raise ScenarioError(f"--judge: {name!r} is not one of {', '.join(COMPARABLE)}")
     return name

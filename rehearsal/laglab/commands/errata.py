@@ -1,5 +1,6 @@
 """``laglab errata``."""
 
+from functools import partial
 from typing import Annotated
 
 import typer
@@ -11,18 +12,17 @@ from laglab.progress import tracked
 from laglab.scenario import Scenario
 from laglab.studies.errata import VARIANTS, costs, costs_table
 
-TABLE_WIDTH = 104
-"""Columns: a narrower terminal shows the table wrapped, but whole."""
 
-
-@on_scenario
+@partial(on_scenario, by_default="fig8")
 def errata(
     scenario: Scenario,
     seeds: Annotated[int, typer.Option(min=1, help="Runs with noise, for each version.")] = 5,
 ) -> None:
-    """Run the paper's filter as printed beside the filter as corrected, one misprint at a time."""
+    """Run the paper's filter as printed beside it as corrected.
+
+    One misprint at a time, and all of them.
+    """
     require(STEPPING)
+    scenario.must_end()
     rows = list(tracked(costs(scenario, seeds), len(VARIANTS), "errata", "version"))
-    console = Console()
-    console.width = max(console.width, TABLE_WIDTH)
-    console.print(costs_table(scenario, rows), crop=False, markup=False)
+    Console().print(costs_table(scenario, rows), markup=False)

@@ -9,6 +9,7 @@ import laglab_fmu
 from laglab.commands.group import group
 from laglab.extras import STEPPING, require
 from laglab.progress import status
+from laglab.results.writable import folder_place
 
 app = group("The robot as an FMU.")
 
@@ -27,9 +28,12 @@ def build(
         ),
     ] = False,
 ) -> None:
-    """Build Robot2.fmu, Robot3.fmu and Fleet3.fmu, for this machine or for all."""
+    """Build Robot2.fmu, Robot3.fmu and Fleet3.fmu.
+
+    For this machine, or for all.
+    """
     require(STEPPING)
-    folder = out or Path(laglab_fmu.__file__).parent
+    folder = folder_place("--out", out or Path(laglab_fmu.__file__).parent)
     with status() as tell:
         tell("compiling")
         built = laglab_fmu.build_fmus(folder, laglab_fmu.PLATFORMS if all_platforms else ())

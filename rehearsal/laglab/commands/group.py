@@ -1,20 +1,27 @@
 """A command that has commands: alone it shows its help."""
 
+from collections.abc import Callable
+
 import typer
 
 
-def group(help: str) -> typer.Typer:  # noqa: A002 as Typer calls it
-    """An empty one, with what it is for."""
+def alone(context: typer.Context) -> None:
+    """Without a command, show the help."""
+    if context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+
+
+def group(
+    help: str,  # noqa: A002 as Typer calls it
+    callback: Callable[..., None] = alone,
+    completion: bool = False,
+) -> typer.Typer:
+    """An empty one, with what it is for; `completion`: shells can be taught to complete it."""
     return typer.Typer(
         help=help,
-        callback=_alone,
+        callback=callback,
         invoke_without_command=True,
         rich_markup_mode=None,
         pretty_exceptions_enable=False,
-        add_completion=False,
+        add_completion=completion,
     )
-
-
-def _alone(context: typer.Context) -> None:
-    if context.invoked_subcommand is None:
-        typer.echo(context.get_help())

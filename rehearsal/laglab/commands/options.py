@@ -6,13 +6,27 @@ from typing import Annotated, Any, NamedTuple
 
 import typer
 
-from laglab.scenario import assignment, load, read_timeline
+from laglab.scenario import assignment, load, read_timeline, shipped_names
 from laglab.scenario.keys import NO_UNIT, rows
+from laglab_control import ESTIMATORS
 
 ScenarioArgument = Annotated[
-    str, typer.Argument(metavar="SCENARIO", help="A shipped scenario's name, or a TOML file.")
+    str,
+    typer.Argument(
+        metavar="SCENARIO",
+        help="A shipped scenario's name, or a TOML file.",
+        autocompletion=shipped_names,
+    ),
 ]
-
+EstimatorsOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--estimator",
+        metavar="NAME",
+        help=f"The filter in the loop; further ones shadow it: {', '.join(ESTIMATORS)}.",
+        autocompletion=lambda: list(ESTIMATORS),
+    ),
+]
 
 POSE = "X,Y,THETA"
 
@@ -45,13 +59,14 @@ OWN: dict[str, Own] = {
 }
 """Dotted key of a scenario → its option, which says what the key says."""
 OF_SEVERAL_KEYS: dict[str, Any] = {
-    "estimator": Annotated[
-        list[str] | None,
-        typer.Option("--estimator", help="The filter in the loop; further ones shadow it."),
-    ],
+    "estimator": EstimatorsOption,
     "timeline": Annotated[
         str | None,
-        typer.Option("--timeline", help="What the link does when: TOML, or a run's link.csv."),
+        typer.Option(
+            "--timeline",
+            metavar="FILE",
+            help="What the link does when: TOML, or a run's link.csv.",
+        ),
     ],
     "set": Annotated[
         list[str] | None,
@@ -82,10 +97,10 @@ def _parameter(key: str) -> str:
     return key.replace(".", "_")
 
 
-def _parameters() -> Iterator[inspect.Parameter]:
+def _parameters(by_default: object) -> Iterator[inspect.Parameter]:
     """SCENARIO, and the options that override it."""
     keyword = inspect.Parameter.KEYWORD_ONLY
-    yield inspect.Parameter("scenario", keyword, annotation=ScenarioArgument)
+    yield inspect.Parameter("scenario", keyword, default=by_default, annotation=ScenarioArgument)
     for name, hint in OF_SEVERAL_KEYS.items():
         yield inspect.Parameter(name, keyword, default=None, annotation=hint)
     said = {row.place: row.key for row in rows()}
@@ -96,8 +111,13 @@ def _parameters() -> Iterator[inspect.Parameter]:
         yield inspect.Parameter(_parameter(key), keyword, default=option, annotation=own.type)
 
 
-def on_scenario(command: Callable[..., None]) -> Callable[..., None]:
-    """Give ``command(scenario, …)`` the SCENARIO argument and the options that override it."""
+def on_scenario(
+    command: Callable[..., None], by_default: object = inspect.Parameter.empty
+) -> Callable[..., None]:
+    """Give ``command(scenario, …)`` the SCENARIO argument and the options that override it.
+
+    `by_default` is the SCENARIO where none is named, if that is allowed.
+    """
     own = list(inspect.signature(command).parameters.values())[1:]
 
     def wrapper(scenario: str, **options: Any) -> None:
@@ -105,7 +125,7 @@ def on_scenario(command: Callable[..., None]) -> Callable[..., None]:
         command(load(scenario, overrides, lambda text: typer.echo(text, err=True)), **options)
 
     keyword = inspect.Parameter.KEYWORD_ONLY
-    parameters = [*_parameters(), *(each.replace(kind=keyword) for each in own)]
+    parameters = [*_parameters(by_default), *(each.replace(kind=keyword) for each in own)]
     wrapper.__name__ = command.__name__
     wrapper.__doc__ = command.__doc__
     wrapper.__annotations__ = {item.name: item.annotation for item in parameters}

@@ -9,9 +9,11 @@ from rich.console import Console
 from laglab.commands.group import group
 from laglab.commands.run import KeyOption
 from laglab.progress import status
+from laglab.results.whole import whole_file
+from laglab.results.writable import file_place, folder_place
 from laglab_conformance import Pace, Side
 from laglab_conformance import conform as test_conformance
-from laglab_protocol import make_key
+from laglab_protocol import make_key, read_key
 from laglab_protocol.dialect.lint import lint as find_faults
 from laglab_protocol.dialect.mavgen import LANGUAGES, dialect_path, generate_into
 
@@ -27,7 +29,7 @@ DialectOption = Annotated[
 def lint(
     file: Annotated[Path | None, typer.Argument(metavar="FILE", help="A dialect's XML.")] = None,
 ) -> None:
-    """Refuse what mavgen lets through; without FILE, look at laglab's own dialect."""
+    """Refuse what mavgen lets through, in FILE or in our dialect."""
     xml = file or dialect_path()
     findings = find_faults(xml)
     for finding in findings:
@@ -43,8 +45,11 @@ def generate(
     lang: Annotated[str, typer.Option(metavar="NAME", help=f"{', '.join(LANGUAGES)}.")] = "C",
     dialect: DialectOption = None,
 ) -> None:
-    """Generate code for firmware (C), programs (Python3), or a dissector for Wireshark (WLua)."""
-    print(generate_into(lang, directory, dialect))
+    """Generate code from the dialect.
+
+    For firmware (C), programs (Python3), or as a dissector for Wireshark (WLua).
+    """
+    print(generate_into(lang, folder_place("DIR", directory), dialect))
 
 
 @app.command()
@@ -68,14 +73,27 @@ def conform(
         typer.Option(help="Whether a robot waits for each command, or has a clock of its own."),
     ] = None,
 ) -> None:
-    """Test whether the robot, or the controller, at URL speaks the protocol; ends its run."""
+    """Test whether what answers at URL speaks the protocol.
+
+    The robot, or the controller, whose run it ends.
+    """
     if side == "controller" and pace:
         raise typer.BadParameter("a controller keeps no pace of its own: leave --pace out")
-    console = Console(stderr=True)
-    console.print(f"testing the {side} at {url}", highlight=False, soft_wrap=True)
+    if key:
+        read_key(key)
+    if junit:
+        file_place("--junit", junit)
+    heading = iter([f"testing the {side} at {url}"])
     with status() as tell:
-        report = test_conformance(url, side, key, pace=pace or "lockstep", progress=tell)
+
+        def progress(what: str) -> None:
+            for line in heading:  # once, when URL could be opened
+                Console(stderr=True).print(line, highlight=False, soft_wrap=True)
+            tell(what)
+
+        report = test_conformance(url, side, key, pace=pace or "lockstep", progress=progress)
     print(report.table())
     if junit:
-        junit.write_text(report.junit(), encoding="utf-8")
+        with whole_file(junit) as file:
+            file.write(report.junit().encode())
     raise typer.Exit(0 if report.conforms else 1)

@@ -9,11 +9,12 @@ from rich.console import Console
 from laglab.errors import ScenarioError
 from laglab.extras import DRAWING, require
 from laglab.results.figure import save
-from laglab.results.place import made
 from laglab.results.replaying import draw_replays, replays_table
 from laglab.results.run import SCENARIO_FILE
 from laglab.results.shadows import collected, kept_rows, shadow_rows
+from laglab.results.writable import folder_place
 from laglab.scenario import load
+from laglab.scenario.tables.estimator import COMPARABLE
 from laglab_gateway import TRACE_FILE, read_trace
 from laglab_station import read_session
 
@@ -28,7 +29,13 @@ TlogArgument = Annotated[
 def replay(
     tlog: TlogArgument,
     estimators: Annotated[
-        list[str], typer.Option("--estimator", metavar="NAME", help="A filter; several times.")
+        list[str],
+        typer.Option(
+            "--estimator",
+            metavar="NAME",
+            help=f"A filter; may be repeated: {', '.join(COMPARABLE)}.",
+            autocompletion=lambda: COMPARABLE,
+        ),
     ],
     scenario: Annotated[
         str | None,
@@ -42,7 +49,7 @@ def replay(
         "replay"
     ),
 ) -> None:
-    """Estimate again from the log of a session, of the simulated or of a real robot."""
+    """Estimate again from the log of a run, simulated or real."""
     require(DRAWING)
     overrides = {} if p0 is None else {"estimator.initial_covariance": p0}
     told = load(scenario or str(tlog.parent / SCENARIO_FILE), overrides)
@@ -52,10 +59,10 @@ def replay(
     trace_file = tlog.parent / TRACE_FILE
     trace = read_trace(trace_file) if trace_file.exists() else None
     asked = {name: shadow_rows(told, name, session) for name in estimators}
-    directory = made(out)
+    directory = folder_place("--out", out)
     replays = {
         name: collected(kept_rows(rows, directory / f"{name}.csv")) for name, rows in asked.items()
     }
     save(draw_replays(told, session, replays, trace), directory / "replay.png")
-    Console().print(replays_table(replays, trace), crop=False, no_wrap=True)
+    Console().print(replays_table(replays, trace))
     Console().print(f"results in {out}", highlight=False, soft_wrap=True)

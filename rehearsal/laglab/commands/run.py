@@ -48,7 +48,10 @@ def run(
     key: KeyOption = None,
     plant: PlantOption = None,
 ) -> None:
-    """Rehearse SCENARIO: robot and controller, the delayed link between them, and the verdict."""
+    """Rehearse SCENARIO: robot, delayed link and controller.
+
+    Two processes, or one; the records, and the verdict.
+    """
     require(REHEARSING)
     if plant is not None and transport == "inline":
         raise ScenarioError("--plant: a real robot does not wait: take --transport udp or serial")

@@ -33,7 +33,7 @@ def scenario(
         ),
     ] = False,
 ) -> None:
-    """Print SCENARIO whole, as a TOML file, with what the options change."""
+    """Print SCENARIO whole, as TOML, with what the options change."""
     if explain:
         from laglab.scenario.explain import explained
 

@@ -15,7 +15,7 @@ def serial(
         int, typer.Option(min=50, max=4_000_000, help="Bits per second, ten to a byte.")
     ] = 57600,
 ) -> None:
-    """Make two serial ports joined by a cable, for any two programs, until Ctrl-C."""
+    """Make two serial ports joined by a cable, until Ctrl-C."""
     with SerialPair(str(path_1), str(path_2), baud) as pair:
         typer.echo(f"{path_1} and {path_2} are joined at {baud} baud; Ctrl-C ends it", err=True)
         try:

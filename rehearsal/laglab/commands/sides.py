@@ -1,7 +1,7 @@
 """`laglab gateway` and `laglab controller`: one side alone."""
 
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import Annotated
 
 import typer
@@ -42,6 +42,17 @@ def _warn(text: str) -> None:
     _say(f"warning: {text}")
 
 
+def _say_whom_we_wait_for(other: str, link: Endpoint) -> None:
+    """And what it is to do: two that both listen, or both call, never meet."""
+    match link.name.partition(":")[0]:
+        case "udpin":
+            _say(f"listening on {link.name}: waiting for {other}, which calls there (udpout)")
+        case "udpout":
+            _say(f"calling {link.name}: waiting for {other}, which listens there (udpin)")
+        case _:
+            _say(f"at {link.name}: waiting for {other}")
+
+
 @on_scenario
 def gateway(
     scenario: Scenario,
@@ -61,7 +72,7 @@ def gateway(
         bool, typer.Option("--disarmed", help="Stand still until a ground station arms the robot.")
     ] = False,
 ) -> None:
-    """Be the robot's side of SCENARIO: wait for a controller, run to the end."""
+    """Be the robot's side of SCENARIO, for a controller elsewhere."""
     if plant is None:
         require(STEPPING)
     with (
@@ -72,12 +83,13 @@ def gateway(
         for each in (link, *watched):
             refuse_open_door(each, key, unsigned)
         directory = place(scenario, out, force)
-        for each in (link, *watched):
-            _say(f"listening on {each.name}")
-        with closing(FileRecorder(directory)) as recorder, progress_of(scenario) as told:
+        _say_whom_we_wait_for("the controller", link)
+        for each in watched:
+            _say(f"a ground station may look on at {each.name}")
+        with progress_of(scenario) as told:
             around = Surroundings(
                 Listener(link, robot.codec.receiver),
-                recorder,
+                FileRecorder(directory),
                 Patience(silence=scenario.silence_timeout),
                 robot.watch(watched),
                 told,
@@ -104,13 +116,12 @@ def controller(
     force: ForceOption = False,
     key: KeyOption = None,
 ) -> None:
-    """Be the remote station of SCENARIO: stabilise the robot at the other end."""
+    """Be the remote station of SCENARIO, for a robot elsewhere."""
     with open_endpoint(endpoint) as link, open_station(scenario, key) as (station, receiver):
         directory = place(scenario, out, force, suffix="-station")
-        _say(f"calling {link.name}: waiting for the robot")
+        _say_whom_we_wait_for("the robot", link)
         with progress_of(scenario) as told:
             record = StationRecord(directory, scenario.sample_time, _warn, told)
-            with closing(record):
-                listener = Listener(link, receiver)
-                ending = answer_alone(station, listener, scenario.silence_timeout, record)
+            listener = Listener(link, receiver)
+            ending = answer_alone(station, listener, scenario.silence_timeout, record)
     conclude(scenario, Way("station", link.name, "unknown"), ending, directory)

@@ -10,12 +10,10 @@ from rich.console import Console
 from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, require
 from laglab.progress import tracked
-from laglab.results.figure import save
+from laglab.results.figure import picture_place, save
 from laglab.studies.trust import CONDITIONS, DEFAULT, fared, stations
 from laglab.studies.trust_report import draw_trust, scores, trust_table
 from laglab_control import ESTIMATORS
-
-TABLE_WIDTH = 100
 
 
 def trust(
@@ -23,17 +21,26 @@ def trust(
     only: Annotated[
         list[str] | None, typer.Option("--only", metavar="CONDITION", help="Just this one.")
     ] = None,
-    estimator: Annotated[str, typer.Option(help="The filter of the first station.")] = DEFAULT,
+    estimator: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME",
+            help=f"The filter of the first station: {', '.join(ESTIMATORS)}.",
+            autocompletion=lambda: list(ESTIMATORS),
+        ),
+    ] = DEFAULT,
     workers: Annotated[int, typer.Option(min=0, max=256, help="Processes; 0: one a core.")] = 0,
     out: Annotated[Path, typer.Option("--out", metavar="FILE", help="The picture.")] = Path(
         "trust.png"
     ),
 ) -> None:
-    """How far each station can be trusted: on bad links, with a worn robot, when it is moved.
+    """Try how far each station can be trusted.
 
-    The guarded default station beside popf with a guard and the filters without one.
+    On bad links, with a worn robot, when it is moved: the guarded default station beside popf with
+    a guard and the filters without one.
     """
     require(REHEARSING)
+    picture_place(out)
     conditions = [_known(name) for name in only or CONDITIONS]
     if estimator not in ESTIMATORS:
         raise ScenarioError(f"--estimator: {estimator!r} is not one of {', '.join(ESTIMATORS)}")
@@ -42,7 +49,6 @@ def trust(
     runs = fared(conditions, compared, seeds, workers or os.cpu_count() or 1)
     got = scores(list(tracked(runs, total, "trust", "run")))
     console = Console()
-    console.width = max(console.width, TABLE_WIDTH)
     console.print(trust_table(got, list(compared), seeds))
     save(draw_trust(got, list(compared)), out)
     console.print(f"picture in {out}", highlight=False)

@@ -7,7 +7,7 @@ from typing import NoReturn
 import typer
 from rich.console import Console
 
-from laglab.errors import RefusedError, RunError
+from laglab.errors import RefusedError, ResultsError, RunError
 from laglab.results.complete import Way, complete
 from laglab.results.figure import FIGURE_FILE
 from laglab.results.run import Run
@@ -26,6 +26,10 @@ def conclude(scenario: Scenario, way: Way, ending: Ending, directory: Path) -> N
     except (RefusedError, RunError):
         if not ending.problem:
             raise
+    except ResultsError as error:
+        if not ending.problem:
+            raise
+        print(f"warning: {error}", file=sys.stderr)
     raise typer.Exit(ending.exit_code)
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.errors import ResultsError
+from laglab.errors import PlaceError
 from laglab.results.numbers import (
     deviation,
     is_measured,
@@ -18,6 +18,8 @@ from laglab.results.numbers import (
     robot_pose,
     shadow_estimates,
 )
+from laglab.results.whole import whole_file
+from laglab.results.writable import file_place
 from laglab.scenario import Scenario
 from laglab_gateway import Trace
 
@@ -129,17 +131,21 @@ def draw_deviations(
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write the figure in the format that the name's ending says.
+    """Write the figure in the format that the name's ending says. Raises ResultsError."""
+    with whole_file(path) as file:
+        figure.savefig(file, format=_format(path), dpi=DOTS_PER_INCH)
 
-    Raises: ResultsError, when there is no such format, or the file cannot be written.
-    """
-    known = figure.canvas.get_supported_filetypes()
-    if path.suffix[1:].lower() not in known:
-        raise ResultsError(f"cannot draw {path}: its name must end in one of {', '.join(known)}")
-    try:
-        figure.savefig(path, dpi=DOTS_PER_INCH)
-    except OSError as error:
-        raise ResultsError(f"cannot draw {path}: {error.strerror}") from error
+
+def picture_place(path: Path) -> Path:
+    """Where `--out` wants a picture: it can be drawn there. Raises PlaceError."""
+    known = empty_figure(1, 1).canvas.get_supported_filetypes()
+    if _format(path) not in known:
+        raise PlaceError(f"--out {path}: its name must end in one of {', '.join(known)}")
+    return file_place("--out", path)
+
+
+def _format(path: Path) -> str:
+    return path.suffix[1:].lower()
 
 
 def save_figure(draw_it: Callable[[], Figure], directory: Path) -> bool:

@@ -41,10 +41,10 @@ def rms_deviation(replayed: Shadow, trace: Trace) -> list[float]:
 
 def replays_table(replays: Replays, trace: Trace | None) -> Table:
     """One line a filter: its last estimate; where the true poses are known, its RMS deviation."""
-    table = Table(box=None)
+    table = Table(box=None, pad_edge=False)
     headings = ["filter", "ticks", "x, y, θ at the end"]
     for heading in headings + (["RMS deviation in x, y, θ"] if trace else []):
-        table.add_column(heading, no_wrap=True)
+        table.add_column(heading)
     for name, replayed in replays.items():
         cells = [name, str(len(replayed["tick"])), _spelled(estimates(replayed)[-1].tolist())]
         table.add_row(*cells, *([_spelled(rms_deviation(replayed, trace))] if trace else []))

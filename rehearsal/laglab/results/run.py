@@ -173,7 +173,7 @@ def _columns(path: Path, kind: type[LinkRow | TimingRow]) -> Columns:
     try:
         with path.open(newline="", encoding="utf-8") as file:
             header, *rows = csv.reader(file)
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, csv.Error) as error:
         raise NoRunError(f"{path} cannot be read: {error}") from error
     if header != list(kind._fields):
         raise NoRunError(f"{path}: expected the columns {','.join(kind._fields)}")

@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.errors import NoRunError, ResultsError
+from laglab.errors import NoRunError
 from laglab.results.numbers import AXES, RmsError, deviation
 from laglab.results.summary import Errors
+from laglab.results.whole import whole_file
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario, changed
-from laglab_gateway import Trace
+from laglab_gateway import Trace, format_row
 from laglab_station import SessionTick, ShadowRow, shadow
 
 COLUMNS = ("tick", "x", "y", "theta", "p_xx", "p_xy", "p_xt", "p_yy", "p_yt", "p_tt")
@@ -39,17 +40,16 @@ def shadow_rows(
 
 
 def kept_rows(rows: Iterable[ShadowRow], path: Path) -> Iterator[ShadowRow]:
-    """The same rows, each written to the file; numbers read back to the same doubles."""
+    """The same rows, each written to the file; numbers read back to the same doubles.
+
+    Raises: ResultsError.
+    """
     upper = np.triu_indices(3)
-    try:
-        with path.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(COLUMNS)
-            for row in rows:
-                writer.writerow([row.tick, *row.x.tolist(), *row.P[upper].tolist()])
-                yield row
-    except OSError as error:
-        raise ResultsError(f"cannot write {path}: {error.strerror}") from error
+    with whole_file(path) as file:
+        file.write(format_row(COLUMNS).encode())
+        for row in rows:
+            file.write(format_row((row.tick, *row.x.tolist(), *row.P[upper].tolist())).encode())
+            yield row
 
 
 def collected(rows: Iterable[ShadowRow]) -> Shadow:
@@ -66,7 +66,7 @@ def read_shadow(path: Path) -> Shadow:
         with path.open(newline="", encoding="utf-8") as file:
             header, *cells = csv.reader(file)
             table = np.array(cells, dtype=np.float64).reshape(-1, len(COLUMNS))
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, csv.Error) as error:
         raise NoRunError(f"{path} is not what an estimator said: {error}") from error
     if header != list(COLUMNS):
         raise NoRunError(f"{path}: expected the columns {','.join(COLUMNS)}")

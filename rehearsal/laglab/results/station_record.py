@@ -3,8 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
-from laglab.errors import ResultsError
-from laglab_gateway import TLOG_FILE, TRACE_FILE, FileRecorder, TraceRow, format_row
+from laglab_gateway import TLOG_FILE, FileRecorder, TraceRow
 from laglab_station import Onlooker, SessionTick, read_session
 
 LATEST = 1024
@@ -40,15 +39,16 @@ class StationRecord(Onlooker):
         self._progress(tick)
 
     def close(self) -> None:
-        """The run is over: what was heard, once more as a trace. Raises ResultsError."""
-        self._recorder.close()
-        path = self._directory / TRACE_FILE
-        rows = station_rows(read_session(self._directory / TLOG_FILE), self._sample_time)
+        """What was heard, once more as a trace. Raises TraceError."""
         try:
-            with path.open("a", encoding="utf-8", newline="") as file:
-                file.writelines(map(format_row, rows))
-        except OSError as error:
-            raise ResultsError(f"cannot write {path}: {error.strerror}") from error
+            self._recorder.flush()
+            session = read_session(self._directory / TLOG_FILE)
+            for row in station_rows(session, self._sample_time):
+                self._recorder.row(row)
+                if row.tick % LATEST == 0:
+                    self._recorder.flush()
+        finally:
+            self._recorder.close()
 
 
 def station_rows(session: Iterable[SessionTick], sample_time: float) -> Iterator[TraceRow]:

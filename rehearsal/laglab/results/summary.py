@@ -6,7 +6,8 @@ from typing import Literal
 import msgspec
 from msgspec import Struct
 
-from laglab.errors import NoRunError, ResultsError
+from laglab.errors import NoRunError
+from laglab.results.whole import whole_file
 from laglab_gateway import LinkReport, TimingReport
 from laglab_station import StationReport
 
@@ -75,12 +76,9 @@ class Summary(Struct, frozen=True, kw_only=True):
 
 
 def write_summary(summary: Summary, directory: Path) -> None:
-    """Keep the summary beside the trace. Raises ResultsError when it cannot be written."""
-    path = directory / SUMMARY_FILE
-    try:
-        path.write_bytes(msgspec.json.format(msgspec.json.encode(summary), indent=2) + b"\n")
-    except OSError as error:
-        raise ResultsError(f"cannot write {path}: {error.strerror}") from error
+    """Keep the summary beside the trace. Raises ResultsError."""
+    with whole_file(directory / SUMMARY_FILE) as file:
+        file.write(msgspec.json.format(msgspec.json.encode(summary), indent=2) + b"\n")
 
 
 def read_summary(directory: Path) -> Summary:
@@ -93,7 +91,7 @@ def read_summary(directory: Path) -> Summary:
             return msgspec.json.decode(data, type=Summary)
     except OSError as error:
         raise NoRunError(f"{path} cannot be read: {error.strerror}") from error
-    except msgspec.DecodeError as error:
+    except (msgspec.DecodeError, RecursionError) as error:
         raise NoRunError(f"{path} is not a run's summary: {error}") from error
     raise NoRunError(f"{path} has schema version {version}, this laglab reads {SCHEMA_VERSION}")
 

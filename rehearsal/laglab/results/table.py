@@ -97,6 +97,8 @@ def _station_rows(station: StationReport) -> dict[str, str]:
         rows["alarms at ticks"] = alarm_ticks(station)
     if station.gated:
         rows["wild measurements"] = f"{station.gated}, not used"
+    for each in station.calibration:
+        rows[each.name] = f"{100 * each.value:+.1f} % ± {100 * each.deviation:.1f} %"
     if station.tick_p50_s is not None and station.tick_p99_s is not None:
         p50, p99 = 1e6 * station.tick_p50_s, 1e6 * station.tick_p99_s
         rows["the station's answer to a tick"] = f"p50 {p50:.0f} µs, p99 {p99:.0f} µs"

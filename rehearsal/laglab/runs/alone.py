@@ -1,5 +1,6 @@
 """One side of a run alone: the other one is somebody else's."""
 
+from contextlib import closing
 from dataclasses import replace
 
 from laglab.runs.clock import LoopClock
@@ -13,7 +14,7 @@ from laglab_station import Onlooker, Station, run_station
 
 
 def serve_alone(robot: OpenRobot, around: Surroundings) -> Ending:
-    """The robot's side to the end; what breaks is in the ending."""
+    """The robot's side to the end, its record closed; what breaks is in the ending."""
     clock = LoopClock(around.progress)
     warnings: list[str] = []
 
@@ -22,7 +23,7 @@ def serve_alone(robot: OpenRobot, around: Surroundings) -> Ending:
         around.warn(text)
 
     try:
-        with short_pauses():
+        with short_pauses(), closing(around.recorder):
             served = robot.serve(replace(around, progress=clock, warn=warn))
     except SIDE_ERRORS as error:
         return _cut_short(error, clock, warnings)
@@ -52,10 +53,10 @@ class _Timed(Onlooker):
 def answer_alone(
     station: Station, listener: Listener, silence_timeout: float, onlooker: Onlooker
 ) -> Ending:
-    """The station's side to the end; what breaks is in the ending."""
+    """The station's side to the end, the onlooker closed; what breaks is in the ending."""
     clock = LoopClock(lambda _: None)
     try:
-        with short_pauses():
+        with short_pauses(), closing(onlooker):
             end = run_station(station, listener, silence_timeout, _Timed(onlooker, clock))
     except KeyboardInterrupt:
         outcome = Outcome(EndReason.INTERRUPTED, station.tick or 0)

@@ -1,8 +1,17 @@
 """Scenarios: what a run is about, whole, in a TOML file of nested tables."""
 
-from laglab.scenario.loading import changed, load, shipped
+from laglab.scenario.loading import changed, load, shipped, shipped_names
 from laglab.scenario.model import Scenario
 from laglab.scenario.overrides import Overrides, assignment
 from laglab.scenario.timeline_file import read_timeline
 
-__all__ = ["Overrides", "Scenario", "assignment", "changed", "load", "read_timeline", "shipped"]
+__all__ = [
+    "Overrides",
+    "Scenario",
+    "assignment",
+    "changed",
+    "load",
+    "read_timeline",
+    "shipped",
+    "shipped_names",
+]

@@ -1,6 +1,5 @@
 """Scenarios from files: read, put together with what beats the file, and checked."""
 
-import tomllib
 from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
@@ -11,6 +10,7 @@ from pydantic import ValidationError
 from laglab.errors import ScenarioError
 from laglab.scenario.model import Scenario
 from laglab.scenario.overrides import Overrides, put
+from laglab.scenario.toml import parsed
 
 SHIPPED = resources.files("laglab.scenario") / "shipped"
 SAYS_NOTHING = {"name", "description"}
@@ -53,22 +53,23 @@ def _made(fields: dict[str, Any], overrides: Overrides, called: str) -> Scenario
 
 def shipped() -> dict[str, Scenario]:
     """The scenarios that come with the package, by name."""
-    return {name: load(name) for name in _shipped_names()}
+    return {name: load(name) for name in shipped_names()}
 
 
-def _shipped_names() -> list[str]:
+def shipped_names() -> list[str]:
+    """Of the scenarios that come with the package."""
     names = (Path(file.name) for file in SHIPPED.iterdir())
     return sorted(name.stem for name in names if name.suffix == ".toml")
 
 
 def _read(reference: str) -> tuple[dict[str, Any], Path]:
-    path = Path(str(SHIPPED / f"{reference}.toml"))
-    if "/" in reference or not path.is_file():
-        path = Path(reference)
+    path = Path(reference)
+    if reference in shipped_names():
+        path = Path(str(SHIPPED / f"{reference}.toml"))
     try:
-        fields = tomllib.loads(path.read_text(encoding="utf-8"))
+        fields = parsed(path.read_text(encoding="utf-8"))
     except (FileNotFoundError, IsADirectoryError):
-        names = ", ".join(_shipped_names())
+        names = ", ".join(shipped_names())
         raise ScenarioError(
             f"{reference}: no such scenario; shipped: {names}; or give a path to a TOML file"
         ) from None

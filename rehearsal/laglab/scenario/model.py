@@ -2,7 +2,6 @@
 
 import math
 import os
-import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -17,6 +16,7 @@ from laglab.scenario.tables.law import LawTable
 from laglab.scenario.tables.link import LinkTable
 from laglab.scenario.tables.plant import PlantTable
 from laglab.scenario.tables.table import POSE, Pose, Table, as_in
+from laglab.scenario.toml import parsed
 from laglab_control import FAR, RobotModel, is_far
 from laglab_gateway import Safety
 from laglab_gateway.values import Duration, Number, Positive, Switch, Whole, described
@@ -133,7 +133,7 @@ class Scenario(Table):
     @classmethod
     def from_toml(cls, text: str) -> "Scenario":
         """What `to_toml` wrote, with absolute paths."""
-        return cls.model_validate(tomllib.loads(text))
+        return cls.model_validate(parsed(text))
 
     def to_toml(self, folder: Path | None = None) -> str:
         """The scenario as a file, in `folder`, that `load` reads back to an equal one."""

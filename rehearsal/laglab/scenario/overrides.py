@@ -1,11 +1,11 @@
 """Values by dotted keys: what beats a file, from the command line or from a program."""
 
 import re
-import tomllib
 from collections.abc import Mapping
 from typing import Any
 
 from laglab.errors import ScenarioError
+from laglab.scenario.toml import parsed
 
 Overrides = Mapping[str, object]
 """Dotted key → value. The tables of a list are counted from 0: `link.event.0.at`."""
@@ -20,7 +20,7 @@ def assignment(text: str) -> tuple[str, object]:
     if not equals or not re.fullmatch(r"[\w-]+(\.[\w-]+)*", key):
         raise ScenarioError(f"--set {text}: must be KEY=VALUE, such as link.command_delay=15")
     try:
-        read = tomllib.loads(f"value = {value}")
+        read = parsed(f"value = {value}")
     except ValueError as error:
         if value[:1] in {"", "[", "{", '"', "'"}:
             raise ScenarioError(f"--set {text}: {value!r} is no TOML value: {error}") from None

@@ -1,10 +1,10 @@
 """Timelines: what the link does when, told by hand (TOML) or recorded by a run (`link.csv`)."""
 
-import tomllib
 from pathlib import Path
 
 from laglab.errors import ScenarioError
 from laglab.scenario.overrides import Overrides
+from laglab.scenario.toml import parsed
 
 
 def read_timeline(reference: str) -> Overrides:
@@ -17,7 +17,7 @@ def read_timeline(reference: str) -> Overrides:
     if path.suffix == ".csv":
         return {"link.replay": reference}
     try:
-        fields = tomllib.loads(path.read_text(encoding="utf-8"))
+        fields = parsed(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise ScenarioError(f"--timeline {reference}: {error.strerror}") from None
     except ValueError as error:

@@ -36,7 +36,7 @@ def consistency_table(scenario: Scenario, verdicts: Sequence[Verdict], seeds: in
     )
     headings = ("filter", "NEES", "%", "NIS", "%", "ahead", "worst", *AXES, "P<0", "lost", "")
     for heading in headings:
-        table.add_column(heading, no_wrap=True, justify="left" if heading == "filter" else "right")
+        table.add_column(heading, justify="left" if heading == "filter" else "right")
     for verdict in verdicts:
         table.add_row(verdict.estimator, *_cells(verdict))
     return table

@@ -30,7 +30,7 @@ VARIANTS = (
         Variant(f"({erratum.equation}) {erratum.printed}", frozenset({erratum}))
         for erratum in Erratum
     ),
-    Variant("as printed, all of them", frozenset(Erratum)),
+    Variant("all as printed", frozenset(Erratum)),
 )
 
 
@@ -78,12 +78,14 @@ def costs_table(scenario: Scenario, rows: list[Cost]) -> Table:
     """One line a variant."""
     table = Table(
         box=None,
+        pad_edge=False,
+        collapse_padding=True,
         title=f"{scenario.name}: popf, n = {scenario.link.command_delay}, "
         f"m = {scenario.link.measurement_delay}, P_0 = {scenario.estimator.initial_covariance:g} I",
         caption="RMS error of the estimate in x (m), y (m), θ (rad); diverged: runs with noise",
     )
     for column in ("as printed in", "without noise", "converges", "with noise", "diverged"):
-        table.add_column(column, no_wrap=True)
+        table.add_column(column)
     for row in rows:
         table.add_row(
             row.name,

@@ -3,11 +3,15 @@
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import AfterValidator
+from pydantic import AfterValidator, Field
 
 from laglab.scenario.tables.table import Table
 from laglab_gateway import IDEAL, Event, Impairments, TimelineError, read_link_log
 from laglab_gateway.values import Ticks, described
+from laglab_protocol import UNKNOWN_DELAY
+
+Delay = Annotated[Ticks, Field(lt=UNKNOWN_DELAY)]
+"""As the two sides can tell each other."""
 
 
 def _readable(log: Path) -> Path:
@@ -22,10 +26,10 @@ class LinkTable(Table):
     """The two delays, and what the link does besides: nothing, by default."""
 
     command_delay: Annotated[
-        Ticks, described("ticks", "How late a command comes into force, n.")
+        Delay, described("ticks", "How late a command comes into force, n.")
     ] = 10
     measurement_delay: Annotated[
-        Ticks, described("ticks", "How late a measurement reaches the station, m.")
+        Delay, described("ticks", "How late a measurement reaches the station, m.")
     ] = 20
     command: Annotated[Impairments, described("-", "What else the link does to commands.")] = IDEAL
     measurement: Annotated[

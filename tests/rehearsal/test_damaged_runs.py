@@ -1,0 +1,77 @@
+"""A run one of whose files is no longer what it was: one line that names it, or a picture still."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from laglab.command import main
+
+COMPARE = ("compare", "run", "--out", "both.png")
+REPLAY = ("replay", "run/robot.tlog", "--estimator", "popf")
+REPEAT = ("run", "run/scenario.toml", "--timeline", "run/link.csv", "--transport", "inline")
+READ_BY = {
+    "scenario.toml": (COMPARE, REPLAY, REPEAT),
+    "summary.json": (COMPARE,),
+    "trace.csv": (COMPARE, REPLAY),
+    "link.csv": (REPEAT,),
+    "robot.tlog": (REPLAY,),
+    "shadow-ekf.csv": (COMPARE,),
+}
+JUNK = {
+    "empty": b"",
+    "binary": bytes(range(256)) * 20,
+    "a long line": b"1" * 200_000,
+    "nested": b'{"x": ' + b"[" * 100_000,
+    "nested TOML": b"x = " + b"[" * 3000,
+}
+DAMAGES = [*JUNK, "a folder", "half", "huge numbers"]
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("whole") / "run"
+    options = ("--duration", "0.3", "--estimator", "delayed-ekf", "--estimator", "ekf")
+    with pytest.raises(SystemExit) as ended:
+        main(["run", "lab-radio", *options, "--transport", "inline", "--out", str(folder)])
+    assert ended.value.code == 0
+    assert {each.name for each in folder.iterdir()} >= READ_BY.keys()
+    return folder
+
+
+def damage(path: Path, how: str) -> None:
+    data = path.read_bytes()
+    path.unlink()
+    match how:
+        case "a folder":
+            path.mkdir()
+        case "half":
+            path.write_bytes(data[: len(data) // 2])
+        case "huge numbers":
+            path.write_bytes(data.replace(b"1", b"1e308"))
+        case _:
+            path.write_bytes(JUNK[how])
+
+
+@pytest.mark.parametrize("how", DAMAGES)
+@pytest.mark.parametrize("name", READ_BY)
+def test_a_damaged_file_is_told_in_a_line(
+    name: str,
+    how: str,
+    whole: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(whole, "run")
+    damage(Path("run") / name, how)
+    for arguments in READ_BY[name]:
+        with pytest.raises(SystemExit) as ended:
+            main([*arguments])
+        errors = capsys.readouterr().err
+        assert ended.value.code in (0, 2), errors
+        if ended.value.code:
+            assert len(errors.splitlines()) == 1, errors
+            assert "run/" in errors
+            assert len(errors) < 400

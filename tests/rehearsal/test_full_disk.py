@@ -1,0 +1,162 @@
+"""A disk that fills up during a run: the robot is stopped, one line, exit 4, whole records."""
+
+import json
+import re
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from laglab_gateway import read_trace
+from laglab_protocol import read_tlog
+
+Start = Callable[..., "subprocess.Popen[str]"]
+ListeningPort = Callable[["subprocess.Popen[str]"], str]
+Laglab = Callable[..., subprocess.CompletedProcess[str]]
+
+LONG = ("lab", "--duration", "3600")
+HERE = ("--endpoint", "udpin://127.0.0.1:0")
+FULL = (
+    r"laglab: cannot record small/run/\S+ any further: (No space left on device|File too large): "
+    "what was written up to here is whole; make room, then run again"
+)
+MOUNTED = "mount -t tmpfs -o size={size}k none small"
+LIMITED = "ulimit -f {size}"
+"""Where no file system may be mounted: no file may grow beyond that."""
+AND_KEEP = '; "$@"; code=$?; cp -r small/. kept; exit $code'
+
+
+def may_mount() -> bool:
+    return subprocess.run(["unshare", "-rm", "true"], check=False).returncode == 0
+
+
+class SmallDisk:
+    """A folder `small` of a few kilobytes; what is in it at the end is then in `kept`."""
+
+    def __init__(self, start: Start, folder: Path) -> None:
+        self._start = start
+        self.kept = folder / "kept"
+        (folder / "small").mkdir()
+        self.kept.mkdir()
+
+    def start(self, *arguments: str, size: int = 150) -> "subprocess.Popen[str]":
+        program = (sys.executable, "-m", "laglab", *arguments, "--out", "small/run")
+        mounted = may_mount()
+        script = (MOUNTED if mounted else LIMITED).format(size=size) + AND_KEEP
+        namespace = ("unshare", "-rm") if mounted else ()
+        return self._start(*namespace, "sh", "-c", script, "sh", *program)
+
+    def assert_whole(self) -> None:
+        run = self.kept / "run"
+        size = (run / "robot.tlog").stat().st_size
+        assert size == sum(8 + len(frame.raw) for _, frame in read_tlog(run / "robot.tlog"))
+        text = (run / "trace.csv").read_text()
+        assert text.endswith("\n")
+        assert len({line.count(",") for line in text.splitlines()}) == 1
+        if (run / "summary.json").exists():
+            json.loads((run / "summary.json").read_text())
+
+
+@pytest.fixture
+def small_disk(start_program: Start, tmp_path: Path) -> SmallDisk:
+    return SmallDisk(start_program, tmp_path)
+
+
+def said(process: "subprocess.Popen[str]", code: int) -> str:
+    """On standard error, up to its end with this exit code."""
+    _, errors = process.communicate(timeout=30)
+    assert process.returncode == code, errors
+    assert "Traceback" not in errors
+    return errors
+
+
+def assert_one_line(errors: str, line: str) -> None:
+    """Besides warnings, and what was said of where it listens and whom it calls."""
+    lines = [each for each in errors.splitlines() if each.startswith("laglab")]
+    assert len(lines) == 1, errors
+    assert re.fullmatch(line, lines[0]), errors
+
+
+@pytest.mark.parametrize("transport", ["inline", "udp", "serial"])
+def test_of_a_whole_run(small_disk: SmallDisk, transport: str) -> None:
+    run = small_disk.start("run", *LONG, "--transport", transport)
+    assert_one_line(said(run, 4), FULL)
+    small_disk.assert_whole()
+    assert read_trace(small_disk.kept / "run" / "trace.csv")["tick"][-1] > 100
+
+
+def test_of_a_run_that_records_the_link_and_the_clock_too(small_disk: SmallDisk) -> None:
+    options = ("lab-radio", "--pace", "realtime", "--speed", "20")
+    assert_one_line(said(small_disk.start("run", *options), 4), FULL)
+    small_disk.assert_whole()
+    for name in ("link.csv", "timing.csv"):
+        assert (small_disk.kept / "run" / name).read_text().endswith("\n")
+
+
+def test_of_the_gateway_alone(
+    small_disk: SmallDisk, start: Start, listening_port: ListeningPort
+) -> None:
+    gateway = small_disk.start("gateway", *LONG, *HERE)
+    station = start(
+        "controller", *LONG, "--endpoint", f"udpout://127.0.0.1:{listening_port(gateway)}"
+    )
+    assert_one_line(said(gateway, 4), FULL)
+    output, _ = station.communicate(timeout=20)
+    assert station.returncode == 4
+    assert "the other side failed" in output
+    small_disk.assert_whole()
+
+
+def test_of_the_controller_alone(
+    small_disk: SmallDisk, start: Start, listening_port: ListeningPort
+) -> None:
+    gateway = start("gateway", *LONG, *HERE, "--out", "robot")
+    station = small_disk.start(
+        "controller", *LONG, "--endpoint", f"udpout://127.0.0.1:{listening_port(gateway)}"
+    )
+    assert_one_line(said(station, 4), FULL)
+    output, _ = gateway.communicate(timeout=20)
+    assert gateway.returncode == 4
+    assert "the other side failed" in output
+    small_disk.assert_whole()
+
+
+def test_in_front_of_a_real_robot(
+    small_disk: SmallDisk, start: Start, listening_port: ListeningPort
+) -> None:
+    """Another gateway, on its own clock, is the robot: it is stopped."""
+    own_clock = ("-n", "0", "-m", "0", "--pace", "realtime", "--speed", "4")
+    robot = start("gateway", *LONG, *own_clock, *HERE)
+    run = small_disk.start("run", *LONG, "--plant", f"udpout://127.0.0.1:{listening_port(robot)}")
+    assert_one_line(said(run, 4), FULL)
+    output, _ = robot.communicate(timeout=20)
+    assert robot.returncode == 4
+    assert "the other side failed" in output
+    small_disk.assert_whole()
+
+
+def test_when_only_the_figure_finds_no_room(small_disk: SmallDisk) -> None:
+    if not may_mount():
+        pytest.skip("no file system may be mounted here, in a namespace of our own")
+    run = small_disk.start("run", "fig6", "--duration", "1", "--transport", "inline", size=120)
+    line = "laglab: cannot write small/run/figure.png: No space left on device"
+    assert_one_line(said(run, 4), line)
+    small_disk.assert_whole()
+    left = {path.name for path in (small_disk.kept / "run").iterdir()}
+    assert left == {"scenario.toml", "trace.csv", "robot.tlog", "summary.json"}
+
+
+@pytest.mark.parametrize("name", ["summary.json", "figure.png"])
+def test_when_somebody_else_takes_the_place_meanwhile(
+    start: Start, tmp_path: Path, name: str
+) -> None:
+    pace = ("--pace", "realtime", "--speed", "10")
+    run = start("run", "lab", *pace, "--transport", "inline", "--out", "run")
+    while not (tmp_path / "run" / "timing.csv").exists():
+        time.sleep(0.02)
+    (tmp_path / "run" / name).mkdir()
+    assert_one_line(said(run, 4), f"laglab: cannot write run/{name}: Is a directory")
+    assert read_trace(tmp_path / "run" / "trace.csv")["tick"][-1] == 2000
