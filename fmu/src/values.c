@@ -109,7 +109,7 @@ static Status check_settable(const Instance *instance, const Variable *variable,
         const char *when;
     } ALLOWED[] = {
         [ROLE_PARAMETER] = {MODES_START, "before the simulation starts"},
-        [ROLE_TUNABLE] = {MODES_START | MODE_EVENT | MODE_STEP | MODE_STEP_EVENT, "before the simulation starts, at events and between steps"},
+        [ROLE_TUNABLE] = {MODES_START | MODE_EVENT | MODE_STEP | MODE_STEP_EVENT, "before the start, at events and between steps"},
         [ROLE_INPUT] = {MODES_START | MODES_RUN, "before the simulation ends"},
         [ROLE_ROBOTS] = {MODE_CONFIGURATION, "in configuration mode"},
         [ROLE_DERIVATIVE] = {0, NULL},

@@ -1,11 +1,13 @@
 """The FMUs under test, built once from the sources as they are, and fmpy instances of them."""
 
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import fmpy
 import pytest
+from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Model, FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Model, FMU3Slave
 
@@ -94,6 +96,18 @@ class Face:
         self.free(state)
         return data
 
+    @contextmanager
+    def refused(self, status: int, *words: str) -> Iterator[None]:
+        """Expects a call to fail with this status and to log one line with these words."""
+        self.messages.clear()
+        with pytest.raises(FMICallException) as error:
+            yield
+        assert error.value.status == status
+        [(logged, category, line)] = self.messages
+        assert (logged, category) == (status, _CATEGORIES[status])
+        assert "\n" not in line
+        assert all(word in line for word in words), line
+
     def become(self, data: bytes) -> None:
         """What another was when it was packed."""
         state = self.deserialize(data)
@@ -107,6 +121,7 @@ _CLASSES = {
     (3, "CoSimulation"): FMU3Slave,
     (3, "ModelExchange"): FMU3Model,
 }
+_CATEGORIES = {2: "logStatusDiscard", 3: "logStatusError"}
 _TYPE_NAMES = {
     Kind.FLOAT64: ("Real", "Float64"),
     Kind.INT32: ("Integer", "Int32"),
