@@ -104,8 +104,9 @@ class Controller:
 
     @cached_property
     def _guard(self) -> Guard | None:
-        model = self.config.model
-        return Guard(self.kind.make(model), model) if self.config.guard else None
+        model, kind = self.config.model, self.kind
+        learner = kind.learner(model) if kind.learner else None
+        return Guard(kind.make(model), model, learner) if self.config.guard else None
 
     def start(self) -> Control:
         """Tick 0, before its correction."""

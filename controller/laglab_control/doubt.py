@@ -2,8 +2,8 @@
 
 Until an echo comes an input is only believed. It may have come into force a little earlier or later
 than the commands usually do; when the echoes stop coming, the last one known may have been held all
-the while. Both are one vector d of what the pose [m, m, rad] would differ by, and its claimed
-covariance is d d^T.
+the while, or the robot has stopped. Each is a vector d of what the pose [m, m, rad] would differ
+by, and its claimed covariance is d d^T.
 """
 
 from collections.abc import Iterator
@@ -16,6 +16,8 @@ from laglab_control.flight import Flight, believed_at, believed_sum
 from laglab_control.model import Matrix, Vector
 from laglab_control.robot import RobotModel
 
+STOPS_AFTER = 0.5
+"""[s] After so long without a command a robot may stop by itself."""
 PATIENCE = 5
 """Ticks by which an echo may be late before its link counts as interrupted."""
 
@@ -52,6 +54,7 @@ def _missed(flight: Flight, Ts: float) -> Iterator[Missed]:
     believed = flight.tick - 1 - told.known
     if believed > told.usual + PATIENCE:
         yield _held(flight, Ts, believed)
+        yield _stopped(flight, Ts)
     elif told.spread:
         yield _shifted(flight, Ts, believed, told.spread)
     if told.missing:
@@ -63,6 +66,15 @@ def _held(flight: Flight, Ts: float, believed: int) -> Missed:
     v_sum, omega_sum = believed_sum(flight, flight.told.known + 1)
     v, omega = flight.told.in_force.tolist()
     return Missed(Ts * (v_sum - believed * v), Ts * (omega_sum - believed * omega), Ts * abs(v_sum))
+
+
+def _stopped(flight: Flight, Ts: float) -> Missed:
+    """As if it had then stopped by itself."""
+    since = flight.told.known + 1 + round(STOPS_AFTER / Ts)
+    if since >= flight.tick:
+        return Missed(0.0, 0.0, 0.0)
+    v_sum, omega_sum = believed_sum(flight, since)
+    return Missed(Ts * v_sum, Ts * omega_sum, Ts * abs(v_sum))
 
 
 def _shifted(flight: Flight, Ts: float, believed: int, spread: float) -> Missed:

@@ -141,6 +141,50 @@ def test_a_drift_that_noise_hides_is_seen_too() -> None:
     assert "on one side of the estimate" in first.cause
 
 
+def worn(ticks: int) -> list[Vector]:
+    """The poses of a robot whose wheels lead a tenth too far."""
+    return driven(ticks, [U * 1.1] * ticks)
+
+
+def test_where_the_estimate_lags_behind_one_that_learns_takes_over() -> None:
+    learner = ESTIMATORS["calibrating-ekf"].make(MODEL)
+    guard = Guard(ESTIMATORS["delayed-ekf"].make(MODEL), MODEL, learner)
+    poses = worn(900)
+    states = followed(guard, sampled(poses, seed=9))
+    (alarm,) = alarms(states)
+    assert "on one side" in alarm.cause
+    last = states[len(poses) - 1]
+    assert last.learning
+    assert guard.learned(states[0]) == ()
+    for scale in guard.learned(last):
+        assert abs(scale.value - 0.1) < 4 * scale.deviation
+    assert np.abs(MODEL.innovation(poses[-1], last.x)).max() < 0.08
+
+
+def test_without_one_that_learns_the_pose_is_found_again_and_again() -> None:
+    states = followed(guarded(), sampled(worn(900), seed=9))
+    assert len(alarms(states)) > 1
+    assert not states[-1].learning
+
+
+def test_one_that_has_learned_keeps_it_when_the_robot_is_moved() -> None:
+    learner = ESTIMATORS["calibrating-ekf"].make(MODEL)
+    guard = Guard(ESTIMATORS["delayed-ekf"].make(MODEL), MODEL, learner)
+    poses = worn(600)
+    poses += [np.array((3.0, -1.0, 1.0))]
+    for _ in range(60):
+        poses.append(MODEL.f(poses[-1], U * 1.1))
+    states = followed(guard, sampled(poses, seed=10))
+    drifting, elsewhere = alarms(states)
+    assert "on one side" in drifting.cause
+    assert 600 <= elsewhere.tick - M < 610
+    before, after = (guard.learned(states[k]) for k in (elsewhere.tick - 10, elsewhere.tick))
+    assert [each.value for each in after] == pytest.approx(
+        [each.value for each in before], abs=0.05
+    )
+    assert np.hypot(*(states[len(poses) - 1].x - poses[-1])[:2]) < 0.1
+
+
 def test_what_the_robot_did_unheard_proves_nothing() -> None:
     """Inputs are not known after tick 100: the robot stands, the estimate drives on."""
     poses = driven(100)

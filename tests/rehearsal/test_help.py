@@ -82,6 +82,7 @@ def test_no_table_is_wider_than_80_columns(
         ["replay", "run/robot.tlog", *replayed],
         ["errata", *short, "--seeds", "1"],
         ["consistency", *short, "--seeds", "2", "--workers", "1"],
+        ["trust", "--only", "two outages of 1 s", "--seeds", "1", "--workers", "1"],
     ):
         for line in said(arguments, capsys).splitlines():
             assert len(line) <= COLUMNS, line

@@ -1,5 +1,6 @@
 """Where results cannot go: one line, exit 2, before anything runs, and nothing is touched."""
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -31,14 +32,23 @@ INTO_A_FILE = {
 }
 
 
+@pytest.fixture(scope="module")
+def a_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What a run left."""
+    folder = tmp_path_factory.mktemp("whole") / "run"
+    options = ("--duration", "0.1", "--transport", "inline", "--out", str(folder))
+    with pytest.raises(SystemExit):
+        main(["run", "fig6", *options])
+    return folder
+
+
 @pytest.fixture(autouse=True)
-def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def here(tmp_path: Path, a_run: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A file, an empty folder, and what a run left."""
     monkeypatch.chdir(tmp_path)
     Path("file").write_text("kept")
     Path("folder").mkdir()
-    with pytest.raises(SystemExit):
-        main(["run", "fig6", "--duration", "0.1", "--transport", "inline", "--out", "run"])
+    shutil.copytree(a_run, "run")
     return tmp_path
 
 

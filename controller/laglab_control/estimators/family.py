@@ -24,6 +24,8 @@ class EstimatorKind(NamedTuple):
     make: Callable[[RobotModel], Estimator[Any]]
     predicts: bool = True
     """Whether it gives an estimate of the present, which can be extrapolated and reported."""
+    learner: Callable[[RobotModel], Estimator[Any]] | None = None
+    """What takes over when a guard finds that its model is wrong."""
 
 
 ESTIMATORS: Mapping[str, EstimatorKind] = {
@@ -51,6 +53,8 @@ ESTIMATORS: Mapping[str, EstimatorKind] = {
     "delayed-ekf": EstimatorKind(
         "the optimum: an EKF at the measurement's tick, carried forward over the known inputs",
         lambda model: DelayedEkf(model, RigidMotions(model)),
+        # Something is wrong already: it may be more, and change sooner, than before anything was.
+        learner=lambda model: CalibratingEkf(model, WheelScales(model.track, 0.1, 0.1)),
     ),
     "calibrating-ekf": EstimatorKind(
         "delayed-ekf that learns how far each wheel leads, besides the pose",

@@ -3,6 +3,7 @@
 Products are written A.dot(B): at this size twice as fast as A @ B.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -54,19 +55,36 @@ def innovation(model: Model, compared: Compared | None) -> Innovation | None:
     return Innovation(model.innovation(z, model.h(x)), S)
 
 
+Triangle = tuple[float, float, float, float, float, float]
+"""Of a symmetric matrix (3, 3): xx, xy, xt, yy, yt, tt."""
+
+
 def normalised_squared(innovation: Innovation) -> float:
     """The NIS, v^T S^-1 v."""
     v, S = innovation
     if len(S) != 3:
         return float(v.dot(_inverse(S)).dot(v))
-    (x, y, t), ((xx, xy, xt), (_, yy, yt), (_, _, tt)) = v.tolist(), S.tolist()
+    return weighted(v.tolist(), precision(S))
+
+
+def precision(S: Matrix) -> Triangle:
+    """S^-1 of S (3, 3), in plain floats."""
+    (xx, xy, xt), (_, yy, yt), (_, _, tt) = S.tolist()
     c_xx, c_xy, c_xt = yy * tt - yt * yt, xt * yt - xy * tt, xy * yt - xt * yy
     determinant = xx * c_xx + xy * c_xy + xt * c_xt
     if not determinant > ILL_CONDITIONED * xx * yy * tt:
-        return float(v.dot(_pseudo_inverse(S)).dot(v))
+        (xx, xy, xt), (_, yy, yt), (_, _, tt) = _pseudo_inverse(S).tolist()
+        return xx, xy, xt, yy, yt, tt
     c_yy, c_yt, c_tt = xx * tt - xt * xt, xy * xt - xx * yt, xx * yy - xy * xy
-    squares = x * x * c_xx + y * y * c_yy + t * t * c_tt
-    return float((squares + 2 * (x * y * c_xy + x * t * c_xt + y * t * c_yt)) / determinant)
+    scale = 1 / determinant
+    return c_xx * scale, c_xy * scale, c_xt * scale, c_yy * scale, c_yt * scale, c_tt * scale
+
+
+def weighted(v: Sequence[float], weights: Triangle) -> float:
+    """v^T W v."""
+    x, y, t = v
+    xx, xy, xt, yy, yt, tt = weights
+    return x * (xx * x + 2 * (xy * y + xt * t)) + y * (yy * y + 2 * yt * t) + tt * t * t
 
 
 def correct(model: Model, prior: Belief, z: Vector) -> Corrected:

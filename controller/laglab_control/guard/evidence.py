@@ -5,12 +5,11 @@ Of a filter that is right about itself the normalised innovations squared (NIS) 
 mean 0. Both are tested over windows, at a level that a run of thousands of ticks seldom reaches.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
-import numpy as np
-
 from laglab_control.chi_square import chi_square_bound
-from laglab_control.estimators.kalman import Innovation, normalised_squared
+from laglab_control.estimators.kalman import Triangle, weighted
 from laglab_control.past.log import Log, append, logged
 
 IMPROBABLE = 1e-6
@@ -22,12 +21,11 @@ WILD = chi_square_bound(IMPROBABLE, DEGREES)
 """An NIS above this is not noise."""
 SPREAD = 25
 """Innovations whose NIS are summed: sees a robot that is elsewhere at once."""
-DRIFT = 200
+DRIFTS = (12, 40, 200)
 """Innovations whose mean is taken: sees an estimate that lags behind by less than the noise."""
 FEWEST_OF_SPREAD = 3
-FEWEST_OF_DRIFT = 50
-EVERY = 10
-"""The drift is looked for at each tenth innovation: it does not come suddenly."""
+EVERY = 3
+"""The drift is looked for at each third innovation: it does not come suddenly."""
 
 
 class Sums(NamedTuple):
@@ -51,19 +49,31 @@ def no_evidence() -> Evidence:
     return logged(NO_EVIDENCE)
 
 
-def weighed(evidence: Evidence, innovation: Innovation, nis: float) -> Evidence:
-    """With one more; of a wild one only that it is wild."""
+def weighed(evidence: Evidence, innovation: Sequence[float], nis: float) -> Evidence:
+    """With one more (3,); of a wild one only that it is wild."""
     total, x, y, theta = evidence.newest
     if not nis <= WILD:  # nor is what is not finite
-        return append(evidence, Sums(total + WILD, x, y, theta), DRIFT + 1)
-    v_x, v_y, v_theta = innovation.value.tolist()
+        return append(evidence, Sums(total + WILD, x, y, theta), DRIFTS[-1] + 1)
+    v_x, v_y, v_theta = innovation
     sums = Sums(total + nis, x + v_x, y + v_y, theta + v_theta)
-    return append(evidence, sums, DRIFT + 1)
+    return append(evidence, sums, DRIFTS[-1] + 1)
 
 
-def contradiction(evidence: Evidence, innovation: Innovation) -> str | None:
-    """What cannot be noise, said in a line; None when all can. `innovation` is the newest."""
-    return _spread(evidence) or _drift(evidence, innovation)
+class Contradiction(NamedTuple):
+    """What cannot be noise."""
+
+    cause: str
+    """In a line."""
+    drift: bool
+    """Whether the estimate lags behind, as with a wrong model; else it is somewhere else."""
+
+
+def contradiction(evidence: Evidence, weights: Triangle) -> Contradiction | None:
+    """None when all can be noise. `weights`: S^-1 of the newest innovation."""
+    if cause := _spread(evidence):
+        return Contradiction(cause, drift=False)
+    cause = _drift(evidence, weights)
+    return Contradiction(cause, drift=True) if cause else None
 
 
 def _spread(evidence: Evidence) -> str | None:
@@ -81,18 +91,27 @@ def _spread(evidence: Evidence) -> str | None:
     )
 
 
-def _drift(evidence: Evidence, innovation: Innovation) -> str | None:
+def _drift(evidence: Evidence, weights: Triangle) -> str | None:
     """N b^T S^-1 b of the mean b of N innovations, with the S of the newest, is chi-square too."""
     items, length = evidence
-    count = min(length - 1, DRIFT)
-    if count < FEWEST_OF_DRIFT or length % EVERY:
+    if length % EVERY:
         return None
-    newest, oldest = items[length - 1], items[length - 1 - count]
-    mean = [(new - old) / count for new, old in zip(newest[1:], oldest[1:], strict=True)]
-    if count * normalised_squared(Innovation(np.array(mean), innovation.S)) <= WILD:
-        return None
-    x, y, theta = mean
-    return (
-        f"the last {count} measurements lie on one side of the estimate: on average by {x:.3f} m, "
-        f"{y:.3f} m, {theta:.3f} rad"
-    )
+    for most in DRIFTS:
+        count = min(length - 1, most)
+        if count < DRIFTS[0]:
+            return None
+        mean = _mean(items[length - 1 - count], items[length - 1], count)
+        if count * weighted(mean, weights) > WILD:
+            x, y, theta = mean
+            return (
+                f"the last {count} measurements lie on one side of the estimate: on average by "
+                f"{x:.3f} m, {y:.3f} m, {theta:.3f} rad"
+            )
+        if count < most:
+            return None
+    return None
+
+
+def _mean(oldest: Sums, newest: Sums, count: int) -> tuple[float, float, float]:
+    x, y, theta = newest.x - oldest.x, newest.y - oldest.y, newest.theta - oldest.theta
+    return x / count, y / count, theta / count

@@ -18,9 +18,16 @@ from laglab_control.estimators.interface import (
     State,
     by_sampling,
 )
-from laglab_control.estimators.kalman import Belief, Innovation, normalised_squared
+from laglab_control.estimators.kalman import Belief, Innovation, precision, weighted
 from laglab_control.estimators.windows import RigidMotions
-from laglab_control.guard.evidence import WILD, Evidence, contradiction, no_evidence, weighed
+from laglab_control.guard.evidence import (
+    WILD,
+    Contradiction,
+    Evidence,
+    contradiction,
+    no_evidence,
+    weighed,
+)
 from laglab_control.guard.seen import Seen
 from laglab_control.model import Matrix, Vector
 from laglab_control.past.log import Log, append, logged
@@ -44,9 +51,11 @@ class Watched(NamedTuple):
     """An estimator's state, and what the guard knows; immutable."""
 
     state: State
-    """Of the estimator, or while the pose is being found of the one that finds it. Its tick 0 is
+    """Of the estimator, of the one that finds the pose, or of the one that learns. Its tick 0 is
     tick `origin`."""
     origin: int
+    learning: bool
+    """Whether the learner has taken over, for good."""
     aside: State | None
     """While the pose is being found: the estimator's state when it was given up."""
     found: int
@@ -84,10 +93,14 @@ class Guard(Estimator[Watched]):
     wild (its normalised innovation squared is beyond the 1 - 1e-6 quantile) is not taken. After an
     alarm the estimate is the newest measurement with P = R, and a `delayed-ekf`, which copes with
     that, stands in until LOCATING measurements have come; then the estimator goes on from there.
+
+    Where the estimate lags behind it is the model that is wrong. A `learner`, if there is one, then
+    takes over for good: it learns of the robot what the estimator takes for known.
     """
 
     estimator: Estimator[Any]
     model: RobotModel
+    learner: Estimator[Any] | None = None
 
     @cached_property
     def _locator(self) -> Estimator[Any]:
@@ -96,14 +109,14 @@ class Guard(Estimator[Watched]):
     def start(self, x: Vector, P: Matrix) -> Watched:
         """The estimator's own."""
         inner = self.estimator.start(x, P)
-        return Watched(inner, 0, None, 0, no_evidence(), logged(), Seen(), 0, None)
+        return Watched(inner, 0, False, None, 0, no_evidence(), logged(), Seen(), 0, None)
 
     def predict(self, state: Watched, u: Vector) -> Watched:
         """The estimator's own."""
-        inner, origin, aside, found, evidence, inputs, seen, gated, _ = state
+        inner, origin, learning, aside, found, evidence, inputs, seen, gated, _ = state
         inner = self._active(state).predict(inner, u)
         inputs = append(inputs, u, MEMORY)
-        return Watched(inner, origin, aside, found, evidence, inputs, seen, gated, None)
+        return Watched(inner, origin, learning, aside, found, evidence, inputs, seen, gated, None)
 
     def correct(
         self,
@@ -129,12 +142,19 @@ class Guard(Estimator[Watched]):
         return state if inner is state.state else state._replace(state=inner)
 
     def calibrated(self, state: Watched, robot: Ways) -> Ways:
-        """The estimator's own, also while it is given up."""
-        return self.estimator.calibrated(_own(state), robot)
+        """As whoever learns has it, also while it is given up."""
+        learner, known = self._learned(state)
+        return learner.calibrated(known, robot)
 
     def learned(self, state: Watched) -> tuple[Calibration, ...]:
-        """The estimator's own, also while it is given up."""
-        return self.estimator.learned(_own(state))
+        """As whoever learns has it, also while it is given up."""
+        learner, known = self._learned(state)
+        return learner.learned(known)
+
+    def _learned(self, state: Watched) -> tuple[Estimator[Any], State]:
+        if state.learning:
+            return self._active(state), state.state
+        return self.estimator, state.state if state.aside is None else state.aside
 
     def innovation(self, state: Watched) -> Innovation | None:
         """The estimator's own."""
@@ -145,6 +165,8 @@ class Guard(Estimator[Watched]):
         return None if state.aside is not None else self.estimator.warning(state.state)
 
     def _active(self, state: Watched) -> Estimator[Any]:
+        if state.learning and self.learner:
+            return self.learner
         return self.estimator if state.aside is None else self._locator
 
     def _put_right(self, state: Watched, inputs: Sequence[Applied]) -> Watched:
@@ -179,16 +201,17 @@ class Guard(Estimator[Watched]):
     def _judged(
         self, state: Watched, measured: Measured, tried: State, innovation: Innovation
     ) -> Watched:
-        nis, evidence = normalised_squared(innovation), state.evidence
-        cause, seen = None, state.seen.and_of(measured.tick)
+        v, weights, evidence = innovation.value.tolist(), precision(innovation.S), state.evidence
+        nis = weighted(v, weights)
+        found, seen = None, state.seen.and_of(measured.tick)
         if seen.newest == measured.tick:  # what is late was weighed by those after it
-            evidence = weighed(evidence, innovation, nis)
-            cause = contradiction(evidence, innovation)
+            evidence = weighed(evidence, v, nis)
+            found = contradiction(evidence, weights)
         if nis <= WILD:
             state = state._replace(state=tried, seen=seen, evidence=evidence)
-            return self._begun_again(state, measured, cause) if cause else self._used(state)
+            return self._begun_again(state, measured, found) if found else self._used(state)
         state = state._replace(seen=seen, evidence=evidence, gated=state.gated + 1)
-        return self._begun_again(state, measured, cause) if cause else state
+        return self._begun_again(state, measured, found) if found else state
 
     def _used(self, state: Watched) -> Watched:
         """One more of those by which the pose is found, if it is being found."""
@@ -197,15 +220,24 @@ class Guard(Estimator[Watched]):
         state = state._replace(found=state.found + 1)
         return self._resumed(state) if state.found >= LOCATING else state
 
-    def _begun_again(self, state: Watched, measured: Measured, cause: str) -> Watched:
+    def _begun_again(self, state: Watched, measured: Measured, found: Contradiction) -> Watched:
         """The measurement is all that is known of the pose."""
-        aside = state.state if state.aside is None else state.aside
         x = np.array(measured.z)
         if state.x is not None and math.isfinite(state.x[2]):
             x[2] += 2 * math.pi * round(float(state.x[2] - x[2]) / (2 * math.pi))
-        state = state._replace(aside=aside, found=1, evidence=no_evidence())
-        state = self._from(state, measured.tick, self._locator.start(x, self.model.R))
-        return state._replace(alarm=Alarm(state.tick, cause))
+        state, begun = self._replacement(state, x, found.drift)
+        state = self._from(state._replace(evidence=no_evidence()), measured.tick, begun)
+        return state._replace(alarm=Alarm(state.tick, found.cause))
+
+    def _replacement(self, state: Watched, x: Vector, drift: bool) -> tuple[Watched, State]:
+        """Who goes on from x, with P = R."""
+        R = self.model.R
+        if state.learning:
+            return state, self._active(state).restart(state.state, x, R)
+        if drift and self.learner:
+            return state._replace(learning=True, aside=None), self.learner.start(x, R)
+        aside = state.state if state.aside is None else state.aside
+        return state._replace(aside=aside, found=1), self._locator.start(x, R)
 
     def _resumed(self, state: Watched) -> Watched:
         """The pose is known again at the newest measurement's tick: the estimator goes on there."""
@@ -225,8 +257,3 @@ class Guard(Estimator[Watched]):
         for u in items[length - (tick - origin) : length]:
             inner = active.predict(inner, u)
         return state._replace(state=inner, origin=origin)
-
-
-def _own(state: Watched) -> State:
-    """The estimator's, as of now or of when it was given up."""
-    return state.state if state.aside is None else state.aside

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -76,7 +77,7 @@ def trust_table(of: Scores, stations: Sequence[str], seeds: int) -> Table:
     )
     table.add_column("", no_wrap=True)
     for name in (*stations, "RMS", "NEES", "alarm", "found"):
-        table.add_column(name, justify="right")
+        table.add_column(re.sub("(-|, )", r"\1\n", name), justify="right", vertical="bottom")
     for condition in dict.fromkeys(condition for condition, _ in of):
         of_these = [of[condition, station] for station in stations]
         table.add_row(condition, *(str(score.converged) for score in of_these), *_more(of_these[0]))

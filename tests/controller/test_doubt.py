@@ -1,0 +1,100 @@
+"""What is claimed for inputs that are only believed."""
+
+import numpy as np
+import pytest
+
+from laglab_control import Applied, Echo, RobotModel
+from laglab_control.doubt import PATIENCE, doubt
+from laglab_control.flight import Flight, hear, send, take_off
+from laglab_control.model import Vector
+
+MODEL = RobotModel()
+Ts = MODEL.sample_time
+N, M = 3, 5
+X = np.array((1.0, 2.0, 0.5))
+
+
+def told(flight: Flight, tick: int, u: Vector, late: int = N) -> Flight:
+    return hear(MODEL, flight, [Echo(tick, u, tick - late)])[0]
+
+
+def flown(inputs: list[Vector], lates: list[int] | None = None, silent: int = 0) -> Flight:
+    """Each input sent, each in force N (or so many) ticks later, each echo M ticks late but for
+    the last `silent`."""
+    flight = take_off(MODEL, N)
+    for k, u in enumerate(inputs):
+        flight, _ = send(MODEL, flight, u)
+        s = k + 1 - M
+        late = N if lates is None else lates[k % len(lates)]
+        if 0 <= s < late:
+            flight = hear(MODEL, flight, [Echo(s, np.zeros(2), None)])[0]
+        if s >= late and k < len(inputs) - silent:
+            flight = told(flight, s, inputs[s - late], late)
+    return flight
+
+
+STEADY = [np.array((0.5, 0.2))] * 60
+TURNING = [np.array((0.5, 0.02 * k)) for k in range(60)]
+
+
+def test_while_all_is_as_it_usually_is_there_is_none() -> None:
+    assert doubt(flown(TURNING), MODEL, X) is None
+    assert doubt(take_off(MODEL, N), MODEL, X) is None
+
+
+def test_before_the_first_echo_there_is_nothing_to_compare_with() -> None:
+    flight = take_off(MODEL, N)
+    for u in TURNING:
+        flight, _ = send(MODEL, flight, u)
+    assert doubt(flight, MODEL, X) is None
+
+
+def test_of_equal_inputs_it_makes_no_difference_when_they_come() -> None:
+    unknown = doubt(flown(STEADY, lates=[3] * 5 + [4] * 5), MODEL, X)
+    assert unknown is not None
+    np.testing.assert_allclose(unknown, 0.0, atol=1e-18)
+
+
+def test_delays_that_scatter_by_a_tick_shift_a_turn_by_a_tick() -> None:
+    flight = flown(TURNING, lates=[3] * 5 + [4] * 5)
+    unknown = doubt(flight, MODEL, X)
+    assert unknown is not None
+    believed = flight.tick - 1 - flight.told.known
+    spread = np.std(flight.told.recent)
+    expected = Ts * spread * 0.02 * believed
+    assert np.sqrt(unknown[2, 2]) == pytest.approx(expected, rel=0.4)
+
+
+@pytest.mark.parametrize("silent", [PATIENCE + 1, 30])
+def test_when_the_echoes_stop_the_last_input_may_have_been_held(silent: int) -> None:
+    flight = flown(TURNING, silent=silent)
+    unknown = doubt(flight, MODEL, np.zeros(3))
+    assert unknown is not None
+    believed = [flight.tick - 1 - i for i in range(flight.tick - 1 - flight.told.known)]
+    held = flight.told.in_force[1]
+    turn = Ts * sum(TURNING[tick - N][1] - held for tick in believed)
+    assert np.sqrt(unknown[2, 2]) == pytest.approx(turn)
+    assert np.linalg.eigvalsh(unknown)[0] > -1e-15
+
+
+def test_a_few_ticks_of_silence_are_nothing_unusual() -> None:
+    assert doubt(flown(TURNING, silent=PATIENCE), MODEL, X) is None
+
+
+def test_after_half_a_second_it_may_stand() -> None:
+    flight = flown([np.array((1.0, 0.0))] * 200, silent=100)
+    unknown = doubt(flight, MODEL, np.array((0.0, 0.0, np.pi / 2)))
+    assert unknown is not None
+    assert np.sqrt(unknown[1, 1]) == pytest.approx(0.5, abs=0.05)
+    assert unknown[0, 0] < 1e-12
+
+
+def test_of_ticks_that_were_lost_too_until_the_robot_tells() -> None:
+    flight = flown(TURNING, silent=20)
+    flight = told(flight, flight.tick - M, TURNING[flight.tick - M - N])
+    assert len(flight.told.missing) > 10
+    assert doubt(flight, MODEL, X) is not None
+    recalled = [Applied(tick, TURNING[tick - N]) for tick in flight.told.missing]
+    flight, _ = hear(MODEL, flight, [], recalled)
+    assert flight.told.missing == ()
+    assert doubt(flight, MODEL, X) is None
