@@ -105,7 +105,7 @@ static void call2(fmi2Component c, fmi2FMUstate *state) {
     fmi2Real *in = draw(20) ? floats : NULL, *out = draw(20) ? answers : NULL;
     const uint32_t *vr = draw(20) ? references : NULL;
     switch (draw(31)) {
-        case 0: fmi2SetupExperiment(c, 0, 0, draw(9) ? 0.0 : number(), 0, 0); break;
+        case 0: fmi2SetupExperiment(c, 0, 0, draw(9) ? 0.0 : number(), !draw(9), number()); break;
         case 1: fmi2EnterInitializationMode(c); break;
         case 2: fmi2ExitInitializationMode(c); break;
         case 3: if (!draw(20)) fmi2Terminate(c); break;
@@ -154,7 +154,7 @@ static void call3(fmi3Instance c, fmi3FMUState *state) {
     switch (draw(35)) {
         case 0: fmi3EnterConfigurationMode(c); break;
         case 1: fmi3ExitConfigurationMode(c); break;
-        case 2: fmi3EnterInitializationMode(c, 0, 0, draw(9) ? 0.0 : number(), 0, 0); break;
+        case 2: fmi3EnterInitializationMode(c, 0, 0, draw(9) ? 0.0 : number(), !draw(9), number()); break;
         case 3: fmi3ExitInitializationMode(c); break;
         case 4: if (!draw(20)) fmi3Terminate(c); break;
         case 5: if (!draw(20)) fmi3Reset(c); break;
