@@ -122,6 +122,9 @@ def test_a_third_party_compiles_what_is_inside(
     assert token(name).encode() in library.read_bytes()
 
 
+@pytest.mark.skipif(
+    not (host_compiler() and shutil.which("make")), reason="cmake brings neither compiler nor make"
+)
 @pytest.mark.parametrize("name", FMUS)
 def test_fmpy_s_cmake_project_compiles_and_packs_it_again(
     fmus: dict[str, Path], tmp_path: Path, name: str
