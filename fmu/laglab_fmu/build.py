@@ -13,9 +13,10 @@ from laglab_fmu.compiler import (
     zig_compiler,
 )
 from laglab_fmu.contents import c_files, fmi_headers, fmu_contents
+from laglab_fmu.description import FMUS
+from laglab_fmu.mach_o import signed, universal
 from laglab_fmu.variables import MODEL_NAME
 
-FMUS = ("Robot2", "Robot3", "Fleet3")
 ZIP_DATE = (1980, 1, 1, 0, 0, 0)
 """The oldest date that a zip can hold: the same for every file of every build."""
 
@@ -46,7 +47,7 @@ def build_fmus(directory: Path, platforms: Sequence[Platform] = ()) -> list[Path
 
 
 def _compile(folder: Path, compilers: Mapping[Platform, Sequence[str]]) -> dict[Platform, bytes]:
-    """One library with both versions for each platform."""
+    """One library with both versions for each platform; for macOS, one for all processors."""
     for name, text in c_files().items():
         (folder / name).write_bytes(text)
     sources = sorted(path.name for path in folder.glob("*.c"))
@@ -55,7 +56,15 @@ def _compile(folder: Path, compilers: Mapping[Platform, Sequence[str]]) -> dict[
         library = f"{MODEL_NAME}{platform.suffix}"
         compile_library(folder, sources, library, compiler, fmi_headers())
         binaries[platform] = (folder / library).read_bytes()
-    return binaries
+    return binaries | _for_macos(binaries)
+
+
+def _for_macos(binaries: Mapping[Platform, bytes]) -> dict[Platform, bytes]:
+    """The same signed library for every processor that macOS runs on."""
+    parts = {p: signed(code, MODEL_NAME) for p, code in binaries.items() if p.system == "darwin"}
+    if len(parts) < 2:
+        return parts
+    return dict.fromkeys(parts, universal(list(parts.values())))
 
 
 def _write_zip(path: Path, files: Mapping[str, bytes]) -> Path:

@@ -43,6 +43,7 @@ PLATFORMS = (
     Platform("linux", "x86_64", ".so", "linux64", "x86_64-linux-gnu.2.17"),
     Platform("linux", "aarch64", ".so", "aarch64-linux", "aarch64-linux-gnu.2.17"),
     Platform("windows", "x86_64", ".dll", "win64", "x86_64-windows-gnu"),
+    Platform("windows", "aarch64", ".dll", "aarch64-windows", "aarch64-windows-gnu"),
     Platform("darwin", "x86_64", ".dylib", "darwin64", "x86_64-macos.11.0"),
     Platform("darwin", "aarch64", ".dylib", "aarch64-darwin", "aarch64-macos.11.0"),
 )

@@ -11,7 +11,7 @@ from xml.etree.ElementTree import Element, SubElement
 import fmpy
 
 from laglab_fmu.compiler import Platform
-from laglab_fmu.description import TOKEN, model_description_2, model_description_3, xml_text
+from laglab_fmu.description import FMUS, model_description_2, model_description_3, token, xml_text
 from laglab_fmu.errors import BuildError
 from laglab_fmu.header import variables_header
 from laglab_fmu.units import TYPES
@@ -47,7 +47,7 @@ def own_files(folder: str) -> Path:
 def c_files() -> dict[str, bytes]:
     """The C sources of both versions by name, the generated header included."""
     files = {path.name: path.read_bytes() for path in sorted(own_files("src").glob("*.[ch]"))}
-    return files | {"variables.h": variables_header(TOKEN).encode()}
+    return files | {"variables.h": variables_header({name: token(name) for name in FMUS}).encode()}
 
 
 def fmi_headers() -> Path:
@@ -57,7 +57,8 @@ def fmi_headers() -> Path:
 
 def fmu_contents(name: str, binaries: Mapping[Platform, bytes]) -> dict[str, bytes]:
     """All files of Robot2, Robot3 or Fleet3 by their path in the archive."""
-    version, fleet = int(name[-1]), not name.startswith(MODEL_NAME)
+    identifier, version = name[:-1], int(name[-1])
+    fleet = identifier != MODEL_NAME
     sources = _sources(version)
     names = sorted(source for source in sources if source.endswith(".c"))
     files = {f"sources/{source}": text for source, text in sources.items()}
@@ -65,11 +66,11 @@ def fmu_contents(name: str, binaries: Mapping[Platform, bytes]) -> dict[str, byt
         files["modelDescription.xml"] = model_description_2(names)
     else:
         files["modelDescription.xml"] = model_description_3(fleet)
-        files["sources/buildDescription.xml"] = _build_description(names)
+        files["sources/buildDescription.xml"] = _build_description(identifier, names)
     for platform, library in binaries.items():
         folder = platform.fmi2_folder if version == 2 else platform.fmi3_folder
-        files[f"binaries/{folder}/{MODEL_NAME}{platform.suffix}"] = library
-    return files | _documentation() | _icons(version) | ({} if fleet else _reference_results())
+        files[f"binaries/{folder}/{identifier}{platform.suffix}"] = library
+    return files | _documentation() | _icons(version) | _reference_results(identifier)
 
 
 def _sources(version: int) -> dict[str, bytes]:
@@ -79,9 +80,9 @@ def _sources(version: int) -> dict[str, bytes]:
     return ours | {name: (fmi_headers() / name).read_bytes() for name in HEADERS[version]}
 
 
-def _build_description(sources: list[str]) -> bytes:
+def _build_description(identifier: str, sources: list[str]) -> bytes:
     root = Element("fmiBuildDescription", fmiVersion="3.0")
-    build = SubElement(root, "BuildConfiguration", modelIdentifier=MODEL_NAME)
+    build = SubElement(root, "BuildConfiguration", modelIdentifier=identifier)
     files = SubElement(build, "SourceFileSet", language="C99")
     for source in sources:
         SubElement(files, "SourceFile", name=source)
@@ -103,7 +104,7 @@ def _documentation() -> dict[str, bytes]:
 
 def _row(variable: Variable) -> str:
     unit = next((t.unit for t in TYPES if t.name == variable.declared_type), "")
-    start = repr(variable.start) if variable.role is Role.PARAMETER else ""
+    start = repr(variable.start) if variable.role in (Role.PARAMETER, Role.TUNABLE) else ""
     cells = (variable.name, unit, variable.role.value, start, variable.description)
     return "<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in cells) + "</tr>"
 
@@ -145,8 +146,8 @@ def _terminals() -> bytes:
     return xml_text(root)
 
 
-def _reference_results() -> dict[str, bytes]:
-    """Inputs of the default experiment and what the model answers."""
+def _reference_results(identifier: str) -> dict[str, bytes]:
+    """Inputs of the default experiment and the answers; a fleet is one robot by default."""
     ElementTree.register_namespace("fmi-ls", _LAYER_NAMESPACE)
     layer = {
         "fmi-ls-name": REFERENCE_LAYER,
@@ -161,8 +162,10 @@ def _reference_results() -> dict[str, bytes]:
         ("in", "input", "Wheel speeds of the default experiment"),
         ("out", "result", "Output of the default experiment in co-simulation"),
     ):
-        name = f"{MODEL_NAME}_{end}.csv"
+        name = f"{identifier}_{end}.csv"
         attributes = {"type": "text/csv", "source": name, "role": role}
         SubElement(root, "Related", attributes, description=description)
-        files[f"extra/{REFERENCE_LAYER}/{name}"] = (own_files("content") / name).read_bytes()
+        files[f"extra/{REFERENCE_LAYER}/{name}"] = (
+            own_files("content") / f"{MODEL_NAME}_{end}.csv"
+        ).read_bytes()
     return files | {f"extra/{REFERENCE_LAYER}/fmi-ls-manifest.xml": xml_text(root)}

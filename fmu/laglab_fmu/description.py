@@ -6,6 +6,7 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 from laglab_fmu.parameters import INTEGRATIONS
+from laglab_fmu.structure import structure_2, structure_3
 from laglab_fmu.units import TYPES, UNITS, DeclaredType, Unit
 from laglab_fmu.variables import (
     MODEL_NAME,
@@ -17,10 +18,9 @@ from laglab_fmu.variables import (
     Variable,
 )
 
-TOKEN = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, repr((VARIABLES, TYPES, UNITS)))) + "}"
-"""Says which table a binary was made from; the same for both versions."""
-
 FLEET_NAME = "Fleet"
+FMUS = (f"{MODEL_NAME}2", f"{MODEL_NAME}3", f"{FLEET_NAME}3")
+"""Model name, which is the model identifier too, and version of FMI."""
 DESCRIPTION = "A differential-drive robot with wheel and sensor noise"
 STOP_TIME = 10.0
 """[s] of the default experiment."""
@@ -30,19 +30,31 @@ LOG_CATEGORIES = (
     ("logStatusError", "Calls that were wrong"),
 )
 
+
+def token(fmu: str) -> str:
+    """Says that a description and a binary belong together: of this FMU, made of this table."""
+    return "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, repr((fmu, VARIABLES, TYPES, UNITS)))) + "}"
+
+
 _CAUSALITY = {
     Role.TIME: "independent",
     Role.ROBOTS: "structuralParameter",
     Role.PARAMETER: "parameter",
+    Role.TUNABLE: "parameter",
     Role.INPUT: "input",
     Role.STATE: "output",
     Role.SAMPLED: "output",
     Role.ALGEBRAIC: "output",
     Role.DERIVATIVE: "local",
 }
-_VARIABILITY = {Role.ROBOTS: "fixed", Role.PARAMETER: "fixed", Role.SAMPLED: "discrete"}
-_HAS_START = (Role.ROBOTS, Role.PARAMETER, Role.INPUT)
-_OUTPUTS = (Role.STATE, Role.SAMPLED, Role.ALGEBRAIC)
+_VARIABILITY = {
+    Role.ROBOTS: "fixed",
+    Role.PARAMETER: "fixed",
+    Role.TUNABLE: "tunable",
+    Role.SAMPLED: "discrete",
+}
+_PARAMETERS = (Role.PARAMETER, Role.TUNABLE)
+_HAS_START = (Role.ROBOTS, *_PARAMETERS, Role.INPUT)
 
 
 def number(value: float) -> str:
@@ -64,15 +76,18 @@ def model_description_2(sources: Sequence[str]) -> bytes:
         "fmiModelDescription",
         fmiVersion="2.0",
         modelName=MODEL_NAME,
-        guid=TOKEN,
+        guid=token(f"{MODEL_NAME}2"),
         description=DESCRIPTION,
         license="MIT",
         generationTool="laglab",
         variableNamingConvention="structured",
         numberOfEventIndicators="0",
     )
+    identifier = {"modelIdentifier": MODEL_NAME}
     for face in ("ModelExchange", "CoSimulation"):
-        files = SubElement(SubElement(root, face, _capabilities_2(face)), "SourceFiles")
+        files = SubElement(
+            SubElement(root, face, identifier | _capabilities_2(face)), "SourceFiles"
+        )
         for source in sources:
             SubElement(files, "File", name=source)
     _units(root)
@@ -84,33 +99,36 @@ def model_description_2(sources: Sequence[str]) -> bytes:
     model = SubElement(root, "ModelVariables")
     for variable in variables:
         _variable_2(model, variable, index)
-    _structure_2(root, variables, index)
+    structure_2(root, variables, index)
     return xml_text(root)
 
 
 def model_description_3(fleet: bool = False) -> bytes:
     """modelDescription.xml of FMI 3.0: one robot, or arrays of `robots`."""
+    name = FLEET_NAME if fleet else MODEL_NAME
     root = Element(
         "fmiModelDescription",
         fmiVersion="3.0",
-        modelName=FLEET_NAME if fleet else MODEL_NAME,
-        instantiationToken=TOKEN,
+        modelName=name,
+        instantiationToken=token(f"{name}3"),
         description=DESCRIPTION + (", many at once" if fleet else ""),
         license="MIT",
         generationTool="laglab",
         variableNamingConvention="structured",
     )
-    for face in ("CoSimulation",) if fleet else ("ModelExchange", "CoSimulation"):
-        SubElement(root, face, _capabilities_3(face))
+    for face in ("ModelExchange", "CoSimulation"):
+        SubElement(root, face, {"modelIdentifier": name} | _capabilities_3(face))
     _units(root)
     _types_3(root)
     _log_categories(root)
     SubElement(root, "DefaultExperiment", DEFAULT_EXPERIMENT)
-    variables = [v for v in VARIABLES if fleet or v.role is not Role.ROBOTS]
+    variables = [v for v in VARIABLES if v.role is not Role.ROBOTS]
+    if fleet:  # first, for importers that follow dimensions while they read
+        variables.insert(0, VARIABLES[REFERENCE["robots"]])
     model = SubElement(root, "ModelVariables")
     for variable in variables:
         _variable_3(model, variable, fleet)
-    _structure_3(root, variables)
+    structure_3(root, variables)
     return xml_text(root)
 
 
@@ -131,13 +149,19 @@ def _capabilities_3(face: str) -> dict[str, str]:
         "providesDirectionalDerivatives",
         "providesAdjointDerivatives",
     )
-    return _capabilities(face, names)
+    in_a_step = (
+        "providesIntermediateUpdate",
+        "mightReturnEarlyFromDoStep",
+        "canReturnEarlyAfterIntermediateUpdate",
+        "hasEventMode",
+    )
+    return _capabilities(face, names if face == "ModelExchange" else (*names, *in_a_step))
 
 
 def _capabilities(face: str, names: tuple[str, ...]) -> dict[str, str]:
     if face == "CoSimulation":
         names = (*names, "canHandleVariableCommunicationStepSize")
-    return {"modelIdentifier": MODEL_NAME} | dict.fromkeys(names, "true")
+    return dict.fromkeys(names, "true")
 
 
 def _units(root: Element) -> None:
@@ -216,7 +240,7 @@ def _common(variable: Variable) -> dict[str, str]:
         "variability": _variability(variable),
         "description": variable.description,
     }
-    if variable.role is Role.PARAMETER:
+    if variable.role in _PARAMETERS:
         attributes["initial"] = "exact"
     elif variable.role not in (Role.TIME, Role.INPUT, Role.ROBOTS):
         attributes["initial"] = "calculated"
@@ -240,41 +264,11 @@ def _variable_3(model: Element, variable: Variable, fleet: bool) -> None:
         attributes["declaredType"] = variable.declared_type
     if variable.state:
         attributes["derivative"] = str(REFERENCE[variable.state])
+    if _CAUSALITY[variable.role] == "output":
+        attributes["intermediateUpdate"] = "true"
     element = SubElement(model, variable.kind.value, attributes)
     if fleet and variable.role not in (Role.TIME, Role.ROBOTS):
         SubElement(element, "Dimension", valueReference=str(REFERENCE["robots"]))
-
-
-def _dependencies(variable: Variable) -> tuple[str, ...]:
-    return (variable.name,) if variable.role is Role.STATE else variable.depends_on
-
-
-def _structure_2(root: Element, variables: list[Variable], index: dict[str, str]) -> None:
-    structure = SubElement(root, "ModelStructure")
-    for group, roles in (("Outputs", _OUTPUTS), ("Derivatives", (Role.DERIVATIVE,))):
-        unknowns = SubElement(structure, group)
-        for variable in variables:
-            if variable.role in roles:
-                depends = " ".join(index[name] for name in _dependencies(variable))
-                attributes = {"index": index[variable.name], "dependencies": depends}
-                SubElement(unknowns, "Unknown", attributes)
-    initial = SubElement(structure, "InitialUnknowns")
-    for variable in variables:
-        if variable.role in (*_OUTPUTS, Role.DERIVATIVE):
-            SubElement(initial, "Unknown", index=index[variable.name])
-
-
-def _structure_3(root: Element, variables: list[Variable]) -> None:
-    structure = SubElement(root, "ModelStructure")
-    for group, roles in (("Output", _OUTPUTS), ("ContinuousStateDerivative", (Role.DERIVATIVE,))):
-        for variable in variables:
-            if variable.role in roles:
-                depends = " ".join(str(REFERENCE[name]) for name in _dependencies(variable))
-                reference = str(REFERENCE[variable.name])
-                SubElement(structure, group, valueReference=reference, dependencies=depends)
-    for variable in variables:
-        if variable.role in (*_OUTPUTS, Role.DERIVATIVE):
-            SubElement(structure, "InitialUnknown", valueReference=str(REFERENCE[variable.name]))
 
 
 def xml_text(root: Element) -> bytes:

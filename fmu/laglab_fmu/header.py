@@ -1,6 +1,7 @@
 """The C header made from the table of variables."""
 
 import math
+from collections.abc import Mapping
 
 from laglab_fmu.variables import VARIABLES, Kind, Role, Variable
 
@@ -16,6 +17,7 @@ _C_ROLE = {
     Role.TIME: "ROLE_TIME",
     Role.ROBOTS: "ROLE_ROBOTS",
     Role.PARAMETER: "ROLE_PARAMETER",
+    Role.TUNABLE: "ROLE_TUNABLE",
     Role.INPUT: "ROLE_INPUT",
     Role.DERIVATIVE: "ROLE_DERIVATIVE",
 }
@@ -29,7 +31,7 @@ _TEMPLATE = """\
 
 #include "instance.h"
 
-#define MODEL_TOKEN "{token}"
+{tokens}
 
 enum {{
 {references}
@@ -44,10 +46,10 @@ static const Variable VARIABLE[VARIABLES] = {{
 """
 
 
-def variables_header(token: str) -> str:
-    """The text of `variables.h`: value references, and what the C side needs of each variable."""
+def variables_header(tokens: Mapping[str, str]) -> str:
+    """The text of `variables.h`: tokens by FMU, value references, what C needs of each variable."""
     return _TEMPLATE.format(
-        token=token,
+        tokens="\n".join(f'#define TOKEN_{name.upper()} "{text}"' for name, text in tokens.items()),
         references="\n".join(f"    {_constant(variable)}," for variable in VARIABLES),
         lines="\n".join(_line(variable) for variable in VARIABLES),
     )

@@ -21,7 +21,7 @@ from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Slave
 
 from laglab_fmu.compiler import host_platform
-from laglab_fmu.description import FLEET_NAME, TOKEN
+from laglab_fmu.description import FLEET_NAME, token
 from laglab_fmu.errors import CallError, FmuNotBuiltError
 from laglab_fmu.parameters import RobotParameters, values
 from laglab_fmu.variables import MODEL_NAME, REFERENCE, Kind, parameter_names
@@ -95,7 +95,10 @@ class Slave2:
         library = Path(folder, "binaries", platform.fmi2_folder, MODEL_NAME + platform.suffix)
         self.log: list[str] = []
         self.fmu = FMU2Slave(
-            guid=TOKEN, modelIdentifier=MODEL_NAME, unzipDirectory=folder, libraryPath=str(library)
+            guid=token(f"{MODEL_NAME}2"),
+            modelIdentifier=MODEL_NAME,
+            unzipDirectory=folder,
+            libraryPath=str(library),
         )
         self.callbacks = fmi2CallbackFunctions()
         self.callbacks.logger = fmi2CallbackLoggerTYPE(self._logged)
@@ -137,7 +140,8 @@ class Slave3:
     def __init__(self, folder: str, fleet: bool = False) -> None:
         self.log: list[str] = []
         self.fleet = fleet
-        self.fmu = FMU3Slave(guid=TOKEN, modelIdentifier=MODEL_NAME, unzipDirectory=folder)
+        name = FLEET_NAME if fleet else MODEL_NAME
+        self.fmu = FMU3Slave(guid=token(f"{name}3"), modelIdentifier=name, unzipDirectory=folder)
         with _unloading_on_failure(self.fmu):
             self.fmu.instantiate(logMessage=self._logged)
 

@@ -5,7 +5,7 @@ reference is its place in the table, and its name, with `der(x)` read as `der_x`
 field in the C struct `Robot`.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 from laglab_fmu.parameters import INTEGRATIONS, LARGEST_SEED, RobotParameters
@@ -29,6 +29,7 @@ class Role(Enum):
     TIME = "time"
     ROBOTS = "robots"
     PARAMETER = "parameter"
+    TUNABLE = "tunable parameter"
     INPUT = "input"
     STATE = "state"
     SAMPLED = "sampled"
@@ -51,6 +52,8 @@ class Variable:
     """of a derivative: the state"""
     depends_on: tuple[str, ...] = ()
     """of an unknown: the inputs and states it depends on"""
+    depends_at_start_on: tuple[str, ...] = ()
+    """of an unknown: the inputs and parameters it depends on during initialization"""
 
     @property
     def field(self) -> str:
@@ -58,6 +61,13 @@ class Variable:
 
 
 _WHEELS = ("omega_left", "omega_right")
+_DRAWN = ("seed", "noise")
+_V_AT_START = (
+    *_WHEELS,
+    *("wheel_radius", "sample_time", "wheel_noise_variance", "wheel_speed_max"),
+    *("motor_time_constant", "wheel_radius_error", "wheel_slip", *_DRAWN, "wheel_noise_gain"),
+)
+_OMEGA_AT_START = (*_V_AT_START, "track", "track_error")
 
 
 def _input(name: str, description: str) -> Variable:
@@ -70,7 +80,31 @@ def _output(
     return Variable(name, role, description, declared, nominal=1.0, depends_on=depends_on)
 
 
+def _state(name: str, description: str, declared: str) -> Variable:
+    return replace(
+        _output(name, Role.STATE, description, declared, (name,)),
+        depends_at_start_on=(f"{name}_start",),
+    )
+
+
+def _measured(state: str, description: str, declared: str) -> Variable:
+    return replace(
+        _output(f"{state}_meas", Role.SAMPLED, description, declared),
+        depends_at_start_on=(
+            *(f"measurement_variance_{state}", f"{state}_start", *_DRAWN),
+            "measurement_noise_gain",
+        ),
+    )
+
+
+def _speed(name: str, description: str, declared: str, at_start: tuple[str, ...]) -> Variable:
+    return replace(
+        _output(name, Role.ALGEBRAIC, description, declared, _WHEELS), depends_at_start_on=at_start
+    )
+
+
 def _derivative(state: str, description: str, declared: str, *depends_on: str) -> Variable:
+    at_start = (*_V_AT_START, "theta_start") if depends_on else _OMEGA_AT_START
     return Variable(
         f"der({state})",
         Role.DERIVATIVE,
@@ -78,6 +112,7 @@ def _derivative(state: str, description: str, declared: str, *depends_on: str) -
         declared,
         state=state,
         depends_on=(*_WHEELS, *depends_on),
+        depends_at_start_on=at_start,
     )
 
 
@@ -91,6 +126,10 @@ def _parameter(
     return Variable(name, Role.PARAMETER, description, declared, START[name], *bounds, nominal)
 
 
+def _gain(name: str, description: str) -> Variable:
+    return Variable(name, Role.TUNABLE, description, "Ratio", 1.0, 0.0, 1e3, 1.0)
+
+
 _FREE = (None, None)
 _VARIANCE = (0.0, 1e6)
 _ERROR = (-0.9, 10.0)
@@ -99,14 +138,14 @@ VARIABLES = (
     Variable("time", Role.TIME, "Simulation time", "Duration"),
     _input("omega_left", "Commanded speed of the left wheel"),
     _input("omega_right", "Commanded speed of the right wheel"),
-    _output("x", Role.STATE, "Position along x", "Position"),
-    _output("y", Role.STATE, "Position along y", "Position"),
-    _output("theta", Role.STATE, "Heading", "Heading"),
-    _output("x_meas", Role.SAMPLED, "x as measured at the last sample", "Position"),
-    _output("y_meas", Role.SAMPLED, "y as measured at the last sample", "Position"),
-    _output("theta_meas", Role.SAMPLED, "Heading as measured at the last sample", "Heading"),
-    _output("v", Role.ALGEBRAIC, "Speed of the body", "Speed", _WHEELS),
-    _output("omega", Role.ALGEBRAIC, "Turning speed of the body", "AngularSpeed", _WHEELS),
+    _state("x", "Position along x", "Position"),
+    _state("y", "Position along y", "Position"),
+    _state("theta", "Heading", "Heading"),
+    _measured("x", "x as measured at the last sample", "Position"),
+    _measured("y", "y as measured at the last sample", "Position"),
+    _measured("theta", "Heading as measured at the last sample", "Heading"),
+    _speed("v", "Speed of the body", "Speed", _V_AT_START),
+    _speed("omega", "Turning speed of the body", "AngularSpeed", _OMEGA_AT_START),
     _derivative("x", "Speed along x", "Speed", "theta"),
     _derivative("y", "Speed along y", "Speed", "theta"),
     _derivative("theta", "Turning speed", "AngularSpeed"),
@@ -178,6 +217,8 @@ VARIABLES = (
         maximum=1e6,
         kind=Kind.UINT64,
     ),
+    _gain("wheel_noise_gain", "Of the wheels' noise, from the next sample on"),
+    _gain("measurement_noise_gain", "Of the measurement's noise, from the next sample on"),
 )
 
 REFERENCE = {variable.name: reference for reference, variable in enumerate(VARIABLES)}

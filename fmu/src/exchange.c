@@ -1,4 +1,4 @@
-/* Model exchange: continuous states and sample events. */
+/* Model exchange: continuous states; sample events, which co-simulation has too. */
 #include "instance.h"
 
 #include <math.h>
@@ -29,7 +29,18 @@ Status instance_set_states(Instance *instance, const double states[]) {
     return STATUS_OK;
 }
 
-void instance_get_derivatives(Instance *instance, double derivatives[]) {
+static Status check_derivatives(const Instance *instance, const double derivatives[]) {
+    static const char *const NAME[STATES] = {"der(x)", "der(y)", "der(theta)"};
+    for (size_t i = 0; i < STATES * instance->robots; i++) {
+        const char *name = NAME[i / instance->robots];
+        if (instance_check_value(instance, name, i % instance->robots, derivatives[i]) != STATUS_OK) {
+            return STATUS_ERROR;
+        }
+    }
+    return STATUS_OK;
+}
+
+Status instance_get_derivatives(Instance *instance, double derivatives[]) {
     instance_refresh(instance);
     for (size_t i = 0; i < instance->robots; i++) {
         Robot *robot = &instance->robot[i];
@@ -38,6 +49,7 @@ void instance_get_derivatives(Instance *instance, double derivatives[]) {
         derivatives[i + instance->robots] = robot->der_y;
         derivatives[i + 2 * instance->robots] = robot->der_theta;
     }
+    return check_derivatives(instance, derivatives);
 }
 
 Status instance_set_time(Instance *instance, double time) {
@@ -49,13 +61,23 @@ Status instance_set_time(Instance *instance, double time) {
     return STATUS_OK;
 }
 
+/* In co-simulation steps find the samples; in model exchange time tells, and may have left some out. */
+static bool find_sample(const Instance *instance, Robot *robot) {
+    if (instance->kind == KIND_CO_SIMULATION) {
+        return robot_is_due(robot);
+    }
+    const double index = floor((instance->time - instance->start_time) / robot->sample_time + SAMPLE_TOLERANCE);
+    if (!(index > (double)robot->sample && index < 9e15)) {
+        return false;
+    }
+    robot->sample = (int64_t)index - 1;
+    return true;
+}
+
 void instance_take_samples(Instance *instance) {
     for (size_t i = 0; i < instance->robots; i++) {
-        Robot *robot = &instance->robot[i];
-        const double index = floor((instance->time - instance->start_time) / robot->sample_time + SAMPLE_TOLERANCE);
-        if (index > (double)robot->sample && index < 9e15) {
-            robot->sample = (int64_t)index - 1;
-            robot_sample(robot);
+        if (find_sample(instance, &instance->robot[i])) {
+            robot_sample(&instance->robot[i]);
             instance->stale = true;
         }
     }

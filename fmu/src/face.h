@@ -18,6 +18,6 @@
 /* Ends the call for what the model does not have. */
 #define REFUSE(why) return (FMI_STATUS)instance_log(I, STATUS_ERROR, "%s: %s", __func__, why)
 
-enum { MODES_EVALUATE = MODE_INITIALIZATION | MODES_RUN | MODE_TERMINATED };
+enum { MODES_EVALUATE = MODE_INITIALIZATION | MODES_RUN | MODE_INTERMEDIATE | MODE_TERMINATED };
 
 #endif

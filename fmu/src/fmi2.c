@@ -1,8 +1,11 @@
 /* The FMI 2.0 face. */
 #include "fmi2Functions.h"
 
+#include <math.h>
+
 #define FMI_STATUS fmi2Status
 #include "face.h"
+#include "variables.h"
 
 /* The logger takes a printf format. Some importers format it and some do not: the message itself suits both. */
 static void log_message(const Instance *instance, Status status, const char *category, const char *message) {
@@ -34,12 +37,21 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
                               const fmi2CallbackFunctions *functions, fmi2Boolean visible, fmi2Boolean logging) {
     UNUSED(resources);
     UNUSED(visible);
-    Instance draft = {.kind = type == fmi2ModelExchange ? MODEL_EXCHANGE : CO_SIMULATION, .log = log_message};
+    static const char *const TOKENS[] = {TOKEN_ROBOT2, NULL};
+    Instance draft = {.kind = type == fmi2ModelExchange ? KIND_MODEL_EXCHANGE : KIND_CO_SIMULATION,
+                      .tokens = TOKENS,
+                      .log = log_message};
     if (functions) {
         draft.callback = (void (*)(void))functions->logger;
         draft.environment = functions->componentEnvironment;
     }
-    return instance_new(&draft, name, guid, logging);
+    Instance *instance = instance_new(&draft, name, guid, logging);
+    if (instance && type != fmi2ModelExchange && type != fmi2CoSimulation) {
+        instance_log(instance, STATUS_ERROR, "%s: type %d is neither model exchange nor co-simulation", __func__, (int)type);
+        instance_free(instance);
+        return NULL;
+    }
+    return instance;
 }
 
 void fmi2FreeInstance(fmi2Component component) {
@@ -50,22 +62,19 @@ fmi2Status fmi2SetupExperiment(fmi2Component component, fmi2Boolean tolerance_de
                                fmi2Boolean stop_defined, fmi2Real stop) {
     UNUSED(tolerance_defined);
     UNUSED(tolerance);
-    UNUSED(stop_defined);
-    UNUSED(stop);
     INSTANCE(component, MODE_INSTANTIATED);
-    I->start_time = start;
-    return fmi2OK;
+    return (fmi2Status)instance_set_experiment(I, start, stop_defined ? stop : INFINITY);
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component component) {
     INSTANCE(component, MODE_INSTANTIATED);
-    return (fmi2Status)instance_enter_initialization(I, I->start_time);
+    return (fmi2Status)instance_enter_initialization(I);
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component component) {
     INSTANCE(component, MODE_INITIALIZATION);
     instance_refresh(I);
-    I->mode = I->kind == MODEL_EXCHANGE ? MODE_EVENT : MODE_STEP;
+    I->mode = I->kind == KIND_MODEL_EXCHANGE ? MODE_EVENT : MODE_STEP;
     return fmi2OK;
 }
 
@@ -77,8 +86,7 @@ fmi2Status fmi2Terminate(fmi2Component component) {
 
 fmi2Status fmi2Reset(fmi2Component component) {
     INSTANCE(component, MODES_ANY);
-    instance_reset(I);
-    return fmi2OK;
+    return (fmi2Status)instance_reset(I);
 }
 
 /* Values ------------------------------------------------------------------------------------------------------- */
@@ -190,7 +198,8 @@ fmi2Status fmi2SetString(fmi2Component component, const fmi2ValueReference vr[],
 fmi2Status fmi2DoStep(fmi2Component component, fmi2Real start, fmi2Real step, fmi2Boolean no_state_before) {
     UNUSED(no_state_before);
     INSTANCE(component, MODE_STEP);
-    return (fmi2Status)instance_step(I, start, step);
+    StepEnd end;
+    return (fmi2Status)instance_step(I, start, step, &end);
 }
 
 fmi2Status fmi2CancelStep(fmi2Component component) {

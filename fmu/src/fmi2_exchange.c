@@ -37,7 +37,7 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component component, fmi2Boolean no_s
     REQUIRE(terminate);
     *enter_event_mode = fmi2False;
     *terminate = fmi2False;
-    return fmi2OK;
+    return (fmi2Status)instance_check_stop(I, I->time, "a completed step's end,");
 }
 
 fmi2Status fmi2SetTime(fmi2Component component, fmi2Real time) {
@@ -64,8 +64,7 @@ fmi2Status fmi2GetDerivatives(fmi2Component component, fmi2Real derivatives[], s
     INSTANCE(component, MODES_EVALUATE);
     REQUIRE(derivatives);
     if (count != STATES * I->robots) REFUSE("the model has 3 continuous states");
-    instance_get_derivatives(I, derivatives);
-    return fmi2OK;
+    return (fmi2Status)instance_get_derivatives(I, derivatives);
 }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component component, fmi2Real nominals[], size_t count) {

@@ -1,19 +1,26 @@
 /* The FMI 3.0 face: life cycle and co-simulation. */
 #include "fmi3Functions.h"
 
+#include <math.h>
+
 #define FMI_STATUS fmi3Status
 #include "face.h"
+#include "variables.h"
 
 static void log_message(const Instance *instance, Status status, const char *category, const char *message) {
     const fmi3LogMessageCallback logger = (fmi3LogMessageCallback)instance->callback;
     logger(instance->environment, (fmi3Status)status, category, message);
 }
 
-static Instance *instantiate(Kind kind, fmi3String name, fmi3String token, fmi3Boolean logging,
-                             fmi3InstanceEnvironment environment, fmi3LogMessageCallback logger) {
-    const Instance draft = {
-        .kind = kind, .log = log_message, .callback = (void (*)(void))logger, .environment = environment};
-    return instance_new(&draft, name, token, logging);
+static const char *const TOKENS[] = {TOKEN_ROBOT3, TOKEN_FLEET3, NULL};
+
+/* Nothing is to be set here, everything may be read, and an internal step has just ended. */
+static bool intermediate_update(const Instance *instance, double time) {
+    const fmi3IntermediateUpdateCallback update = (fmi3IntermediateUpdateCallback)instance->update_callback;
+    fmi3Boolean return_early = fmi3False;
+    fmi3Float64 return_time = time;
+    update(instance->environment, time, fmi3False, fmi3True, fmi3True, instance->early_return, &return_early, &return_time);
+    return return_early;
 }
 
 const char *fmi3GetVersion(void) {
@@ -30,7 +37,12 @@ fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi
                                           fmi3LogMessageCallback logger) {
     UNUSED(resources);
     UNUSED(visible);
-    return instantiate(MODEL_EXCHANGE, name, token, logging, environment, logger);
+    const Instance draft = {.kind = KIND_MODEL_EXCHANGE,
+                            .tokens = TOKENS,
+                            .log = log_message,
+                            .callback = (void (*)(void))logger,
+                            .environment = environment};
+    return instance_new(&draft, name, token, logging);
 }
 
 fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible,
@@ -40,15 +52,18 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3
                                          fmi3IntermediateUpdateCallback update) {
     UNUSED(resources);
     UNUSED(visible);
-    UNUSED(early_return);
     UNUSED(intermediate);
     UNUSED(intermediates);
-    UNUSED(update);
-    if (event_mode) {
-        if (logger) logger(environment, fmi3Error, "logStatusError", "co-simulation has no event mode");
-        return NULL;
-    }
-    return instantiate(CO_SIMULATION, name, token, logging, environment, logger);
+    const Instance draft = {.kind = KIND_CO_SIMULATION,
+                            .tokens = TOKENS,
+                            .log = log_message,
+                            .callback = (void (*)(void))logger,
+                            .environment = environment,
+                            .update = update ? intermediate_update : NULL,
+                            .update_callback = (void (*)(void))update,
+                            .event_mode = event_mode,
+                            .early_return = early_return};
+    return instance_new(&draft, name, token, logging);
 }
 
 fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token, fmi3String resources,
@@ -76,16 +91,15 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolera
                                        fmi3Float64 start, fmi3Boolean stop_defined, fmi3Float64 stop) {
     UNUSED(tolerance_defined);
     UNUSED(tolerance);
-    UNUSED(stop_defined);
-    UNUSED(stop);
     INSTANCE(instance, MODE_INSTANTIATED);
-    return (fmi3Status)instance_enter_initialization(I, start);
+    const Status status = instance_set_experiment(I, start, stop_defined ? stop : INFINITY);
+    return (fmi3Status)(status == STATUS_OK ? instance_enter_initialization(I) : status);
 }
 
 fmi3Status fmi3ExitInitializationMode(fmi3Instance instance) {
     INSTANCE(instance, MODE_INITIALIZATION);
     instance_refresh(I);
-    I->mode = I->kind == MODEL_EXCHANGE ? MODE_EVENT : MODE_STEP;
+    I->mode = I->kind == KIND_MODEL_EXCHANGE ? MODE_EVENT : I->event_mode ? MODE_STEP_EVENT : MODE_STEP;
     return fmi3OK;
 }
 
@@ -97,8 +111,7 @@ fmi3Status fmi3Terminate(fmi3Instance instance) {
 
 fmi3Status fmi3Reset(fmi3Instance instance) {
     INSTANCE(instance, MODES_ANY);
-    instance_reset(I);
-    return fmi3OK;
+    return (fmi3Status)instance_reset(I);
 }
 
 fmi3Status fmi3EnterConfigurationMode(fmi3Instance instance) {
@@ -114,8 +127,9 @@ fmi3Status fmi3ExitConfigurationMode(fmi3Instance instance) {
 }
 
 fmi3Status fmi3EnterStepMode(fmi3Instance instance) {
-    INSTANCE(instance, MODES_ANY);
-    REFUSE("co-simulation has no event mode");
+    INSTANCE(instance, MODE_STEP_EVENT);
+    I->mode = MODE_STEP;
+    return fmi3OK;
 }
 
 fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 start, fmi3Float64 step, fmi3Boolean no_state_before,
@@ -126,10 +140,11 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 start, fmi3Float64 step
     REQUIRE(terminate);
     REQUIRE(early_return);
     REQUIRE(last_time);
-    const Status status = instance_step(I, start, step);
-    *event_needed = fmi3False;
+    StepEnd end;
+    const Status status = instance_step(I, start, step, &end);
+    *event_needed = end.event_needed;
     *terminate = fmi3False;
-    *early_return = fmi3False;
+    *early_return = end.early_return;
     *last_time = I->time;
     return (fmi3Status)status;
 }

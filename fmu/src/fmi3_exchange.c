@@ -1,24 +1,25 @@
-/* The FMI 3.0 face: model exchange. */
+/* The FMI 3.0 face: events, and model exchange. */
 #include "fmi3Functions.h"
 
 #define FMI_STATUS fmi3Status
 #include "face.h"
 
 fmi3Status fmi3EnterEventMode(fmi3Instance instance) {
-    INSTANCE(instance, MODE_EVENT | MODE_CONTINUOUS_TIME);
-    I->mode = MODE_EVENT;
+    INSTANCE(instance, MODE_EVENT | MODE_CONTINUOUS_TIME | MODE_STEP | MODE_STEP_EVENT);
+    if (I->kind == KIND_CO_SIMULATION && !I->event_mode) REFUSE("the instance was made without event mode");
+    I->mode = I->kind == KIND_MODEL_EXCHANGE ? MODE_EVENT : MODE_STEP_EVENT;
     return fmi3OK;
 }
 
 fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance instance) {
-    INSTANCE(instance, MODE_INITIALIZATION | MODE_EVENT);
+    INSTANCE(instance, MODE_INITIALIZATION | MODE_EVENT | MODE_STEP_EVENT);
     return fmi3OK;
 }
 
 fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *update_needed, fmi3Boolean *terminate,
                                     fmi3Boolean *nominals_changed, fmi3Boolean *states_changed,
                                     fmi3Boolean *next_time_defined, fmi3Float64 *next_time) {
-    INSTANCE(instance, MODE_EVENT);
+    INSTANCE(instance, MODE_EVENT | MODE_STEP_EVENT);
     REQUIRE(update_needed);
     REQUIRE(terminate);
     REQUIRE(nominals_changed);
@@ -49,7 +50,7 @@ fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean no_sta
     REQUIRE(terminate);
     *enter_event_mode = fmi3False;
     *terminate = fmi3False;
-    return fmi3OK;
+    return (fmi3Status)instance_check_stop(I, I->time, "a completed step's end,");
 }
 
 fmi3Status fmi3SetTime(fmi3Instance instance, fmi3Float64 time) {
@@ -76,8 +77,7 @@ fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance instance, fmi3Float64 
     INSTANCE(instance, MODES_EVALUATE);
     REQUIRE(derivatives);
     if (count != STATES * I->robots) REFUSE("a robot has 3 continuous states");
-    instance_get_derivatives(I, derivatives);
-    return fmi3OK;
+    return (fmi3Status)instance_get_derivatives(I, derivatives);
 }
 
 fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance instance, fmi3Float64 nominals[], size_t count) {

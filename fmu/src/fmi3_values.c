@@ -6,7 +6,7 @@
 
 fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference references[], size_t count, fmi3Float64 values[],
                           size_t size) {
-    INSTANCE(instance, MODES_ANY);
+    INSTANCE(instance, MODES_READ);
     if (!count) return fmi3OK;
     REQUIRE(references);
     REQUIRE(values);
@@ -26,7 +26,7 @@ fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference refere
 #define GET_AND_SET(NAME, TYPE, FMI_TYPE)                                                                              \
     fmi3Status fmi3Get##NAME(fmi3Instance instance, const fmi3ValueReference references[], size_t count,               \
                              FMI_TYPE values[], size_t size) {                                                         \
-        INSTANCE(instance, MODES_ANY);                                                                                 \
+        INSTANCE(instance, MODES_READ);                                                                                 \
         if (!count) return fmi3OK;                                                                                     \
         REQUIRE(references);                                                                                           \
         REQUIRE(values);                                                                                               \
@@ -71,7 +71,7 @@ GET_AND_SET(Boolean, TYPE_BOOLEAN, fmi3Boolean)
         UNUSED(references);                                                                                            \
         UNUSED(values);                                                                                                \
         UNUSED(size);                                                                                                  \
-        INSTANCE(instance, MODES_ANY);                                                                                 \
+        INSTANCE(instance, MODES_READ);                                                                                 \
         if (count) REFUSE("the model has no variables of this type");                                                  \
         return fmi3OK;                                                                                                 \
     }                                                                                                                  \
@@ -99,7 +99,7 @@ fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference referen
     UNUSED(sizes);
     UNUSED(values);
     UNUSED(size);
-    INSTANCE(instance, MODES_ANY);
+    INSTANCE(instance, MODES_READ);
     if (count) REFUSE("the model has no variables of this type");
     return fmi3OK;
 }

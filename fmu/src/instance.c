@@ -8,12 +8,6 @@
 
 #include "variables.h"
 
-/* Longer than anybody waits for, and short enough to count its samples. */
-static const double LONGEST_STEP = 1e9; /* samples */
-
-/* Two times closer than this part of them are the same, computed in two ways. */
-static const double TIME_TOLERANCE = 1e-9;
-
 static const struct {
     const char *name;
     unsigned bit;
@@ -64,7 +58,8 @@ bool instance_allows(const Instance *instance, int modes, const char *call) {
         const char *name;
     } NAME[] = {{MODE_INSTANTIATED, "instantiated"}, {MODE_CONFIGURATION, "configuration mode"},
                 {MODE_INITIALIZATION, "initialization mode"}, {MODE_EVENT, "event mode"},
-                {MODE_CONTINUOUS_TIME, "continuous-time mode"}, {MODE_STEP, "step mode"}, {MODE_TERMINATED, "terminated"}};
+                {MODE_CONTINUOUS_TIME, "continuous-time mode"}, {MODE_STEP, "step mode"}, {MODE_STEP_EVENT, "event mode"},
+                {MODE_INTERMEDIATE, "intermediate update mode"}, {MODE_TERMINATED, "terminated"}};
     if (instance->mode & modes) {
         return true;
     }
@@ -82,7 +77,7 @@ static void set_defaults(Robot *robot, int64_t index) {
     for (size_t i = 0; i < VARIABLES; i++) {
         const Variable *variable = &VARIABLE[i];
         const int64_t whole = (int64_t)variable->start;
-        if (variable->role == ROLE_PARAMETER || variable->role == ROLE_INPUT) {
+        if (is_settable(variable)) {
             memcpy((char *)robot + variable->offset, variable->type == TYPE_FLOAT64 ? (const void *)&variable->start : &whole, 8);
         }
     }
@@ -90,11 +85,16 @@ static void set_defaults(Robot *robot, int64_t index) {
 }
 
 Status instance_configure(Instance *instance, size_t robots) {
-    Robot *robot = robots <= SIZE_MAX / sizeof *robot ? realloc(instance->robot, robots * sizeof *robot) : NULL;
-    if (!robot) {
+    Robot *robot = robots <= SIZE_MAX / sizeof *robot ? malloc(robots * sizeof *robot) : NULL;
+    Robot *before = robot ? malloc(robots * sizeof *before) : NULL;
+    if (!before) {
+        free(robot);
         return instance_log(instance, STATUS_ERROR, "robots: no memory for %zu robots", robots);
     }
+    free(instance->robot);
+    free(instance->before);
     instance->robot = robot;
+    instance->before = before;
     instance->robots = robots;
     instance->stale = true;
     for (size_t i = 0; i < robots; i++) {
@@ -103,13 +103,11 @@ Status instance_configure(Instance *instance, size_t robots) {
     return STATUS_OK;
 }
 
-void instance_reset(Instance *instance) {
-    for (size_t i = 0; i < instance->robots; i++) {
-        set_defaults(&instance->robot[i], (int64_t)i);
-    }
+Status instance_reset(Instance *instance) {
     instance->mode = MODE_INSTANTIATED;
-    instance->stale = true;
     instance->start_time = instance->time = 0.0;
+    instance->stop_time = INFINITY;
+    return instance_configure(instance, (size_t)VARIABLE[VR_ROBOTS].start);
 }
 
 Instance *instance_new(const Instance *draft, const char *name, const char *token, bool debug) {
@@ -120,24 +118,26 @@ Instance *instance_new(const Instance *draft, const char *name, const char *toke
     *instance = *draft;
     instance->logged = LOG_DISCARD | LOG_ERROR | (debug ? LOG_EVENTS : 0);
     instance->name = calloc(1, name ? strlen(name) + 1 : 1);
-    if (!instance->name || instance_configure(instance, 1) != STATUS_OK) {
+    if (!instance->name || instance_reset(instance) != STATUS_OK) {
         instance_free(instance);
         return NULL;
     }
     strcpy(instance->name, name ? name : "");
-    if (!token || strcmp(token, MODEL_TOKEN) != 0) {
-        instance_log(instance, STATUS_ERROR, "instantiation token is %s; this binary belongs to %s", token ? token : "NULL",
-                     MODEL_TOKEN);
-        instance_free(instance);
-        return NULL;
+    for (const char *const *own = instance->tokens; token && *own; own++) {
+        if (strcmp(token, *own) == 0) {
+            return instance;
+        }
     }
-    instance_reset(instance);
-    return instance;
+    instance_log(instance, STATUS_ERROR, "instantiation token is %s; this binary belongs to %s", token ? token : "NULL",
+                 instance->tokens[0]);
+    instance_free(instance);
+    return NULL;
 }
 
 void instance_free(Instance *instance) {
     if (instance) {
         free(instance->robot);
+        free(instance->before);
         free(instance->name);
         free(instance);
     }
@@ -156,35 +156,21 @@ void instance_refresh(Instance *instance) {
     instance->stale = false;
 }
 
-Status instance_enter_initialization(Instance *instance, double start_time) {
+Status instance_set_experiment(Instance *instance, double start_time, double stop_time) {
     if (!isfinite(start_time)) {
         return instance_log(instance, STATUS_ERROR, "startTime is %g, not a finite time", start_time);
     }
-    instance->start_time = instance->time = start_time;
-    instance->mode = MODE_INITIALIZATION;
-    instance_log(instance, STATUS_OK, "initializing %zu robot(s) at time %g s", instance->robots, start_time);
+    if (!(start_time <= stop_time)) {
+        return instance_log(instance, STATUS_ERROR, "startTime %g s is not before stopTime, %g s", start_time, stop_time);
+    }
+    instance->start_time = start_time;
+    instance->stop_time = stop_time;
     return STATUS_OK;
 }
 
-Status instance_step(Instance *instance, double start, double step) {
-    if (!isfinite(start) || !isfinite(step) || step <= 0.0) {
-        return instance_log(instance, STATUS_ERROR, "communicationStepSize %g at time %g: the step must be above zero", step,
-                            start);
-    }
-    if (fabs(start - instance->time) > TIME_TOLERANCE * (fabs(instance->time) + step)) {
-        return instance_log(instance, STATUS_ERROR, "currentCommunicationPoint %.17g: the instance is at time %.17g", start,
-                            instance->time);
-    }
-    for (size_t i = 0; i < instance->robots; i++) {
-        if (step > LONGEST_STEP * instance->robot[i].sample_time) {
-            return instance_log(instance, STATUS_ERROR, "communicationStepSize %g is more than %g sample times", step,
-                                LONGEST_STEP);
-        }
-    }
-    for (size_t i = 0; i < instance->robots; i++) {
-        robot_step(&instance->robot[i], step);
-    }
-    instance->time = start + step;
-    instance->stale = true;
+Status instance_enter_initialization(Instance *instance) {
+    instance->time = instance->start_time;
+    instance->mode = MODE_INITIALIZATION;
+    instance_log(instance, STATUS_OK, "initializing %zu robot(s) at time %g s", instance->robots, instance->time);
     return STATUS_OK;
 }

@@ -27,9 +27,17 @@ static double drive_speed(const Robot *robot, double reached, double commanded) 
     return robot->motor_time_constant > 0 ? commanded + (reached - commanded) * lag(robot) : commanded;
 }
 
-static double drive_slope(const Robot *robot, double commanded) {
-    const int limited = robot->wheel_speed_max > 0 && fabs(commanded) > robot->wheel_speed_max;
-    return limited ? 0.0 : 1.0 - lag(robot);
+static double drive_tangent(const Robot *robot, double reached, double commanded, const Robot *d, double d_commanded) {
+    if (robot->wheel_speed_max > 0 && fabs(commanded) > robot->wheel_speed_max) {
+        d_commanded = copysign(d->wheel_speed_max, commanded);
+        commanded = clamp(commanded, robot->wheel_speed_max);
+    }
+    if (!(robot->motor_time_constant > 0)) {
+        return d_commanded;
+    }
+    const double tau = robot->motor_time_constant, T = robot->sample_time;
+    const double d_lag = lag(robot) * (T / tau * d->motor_time_constant - d->sample_time) / tau;
+    return d_commanded * (1.0 - lag(robot)) + (reached - commanded) * d_lag;
 }
 
 static double true_radius(const Robot *robot) {
@@ -56,27 +64,6 @@ void robot_derivatives(Robot *robot) {
     robot->der_theta = robot->omega;
 }
 
-/* With T, A_k = I + T (der by x, y, theta) is (31) and W_k = T (der by the wheels) is (32), columns left, right. */
-void robot_partials(const Robot *robot, double partial[UNKNOWNS][KNOWNS]) {
-    const double grip = 1.0 - robot->wheel_slip;
-    const double r = true_radius(robot), L = true_track(robot);
-    const double left = drive_slope(robot, robot->omega_left), right = drive_slope(robot, robot->omega_right);
-    const double c = cos(robot->theta), s = sin(robot->theta);
-    const double v_by_left = grip * r / 2.0 * left, v_by_right = grip * r / 2.0 * right;
-    const double omega_by_left = -grip * r / L * left, omega_by_right = grip * r / L * right;
-    const double table[UNKNOWNS][KNOWNS] = {
-        [OF_X] = {[BY_X] = 1.0},
-        [OF_Y] = {[BY_Y] = 1.0},
-        [OF_THETA] = {[BY_THETA] = 1.0},
-        [OF_V] = {0, 0, 0, v_by_left, v_by_right},
-        [OF_OMEGA] = {0, 0, 0, omega_by_left, omega_by_right},
-        [OF_DER_X] = {0, 0, -robot->v * s, c * v_by_left, c * v_by_right},
-        [OF_DER_Y] = {0, 0, robot->v * c, s * v_by_left, s * v_by_right},
-        [OF_DER_THETA] = {0, 0, 0, omega_by_left, omega_by_right},
-    };
-    memcpy(partial, table, sizeof table);
-}
-
 /* (3) x <- x + T v cos theta, y <- y + T v sin theta, theta <- theta + T omega */
 static void move_euler(Robot *robot, double T) {
     robot->x += T * robot->v * cos(robot->theta);
@@ -101,18 +88,31 @@ static void move(Robot *robot, double T) {
     }
 }
 
-/* Draws the sample's noise. A variance of zero draws too, so that switching one noise off leaves the other as it was. */
-static void draw(Robot *robot) {
-    double w[2] = {0, 0}, v[3] = {0, 0, 0};
+/* The sample's normal numbers. A variance of zero draws too: switching one noise off leaves the other as it was. */
+static void draw_normal(const Robot *robot, double w[2], double v[3]) {
+    memset(w, 0, 2 * sizeof *w);
+    memset(v, 0, 3 * sizeof *v);
     if (robot->noise) {
         noise_normal((uint64_t)robot->seed, (uint64_t)robot->sample, WHEEL_NOISE, 2, w);
         noise_normal((uint64_t)robot->seed, (uint64_t)robot->sample, MEASUREMENT_NOISE, 3, v);
     }
-    robot->wheel_noise_left = sqrt(robot->wheel_noise_variance) * w[0];
-    robot->wheel_noise_right = sqrt(robot->wheel_noise_variance) * w[1];
-    robot->x_meas = robot->x + sqrt(robot->measurement_variance_x) * v[0];
-    robot->y_meas = robot->y + sqrt(robot->measurement_variance_y) * v[1];
-    robot->theta_meas = robot->theta + sqrt(robot->measurement_variance_theta) * v[2];
+}
+
+static void draw(Robot *robot) {
+    double w[2], v[3];
+    draw_normal(robot, w, v);
+    const double shaken = robot->wheel_noise_gain, misread = robot->measurement_noise_gain;
+    robot->wheel_noise_left = shaken * (sqrt(robot->wheel_noise_variance) * w[0]);
+    robot->wheel_noise_right = shaken * (sqrt(robot->wheel_noise_variance) * w[1]);
+    robot->x_meas = robot->x + misread * (sqrt(robot->measurement_variance_x) * v[0]);
+    robot->y_meas = robot->y + misread * (sqrt(robot->measurement_variance_y) * v[1]);
+    robot->theta_meas = robot->theta + misread * (sqrt(robot->measurement_variance_theta) * v[2]);
+}
+
+/* Of gain sqrt(variance) w; infinite for a variance that leaves zero. */
+static double noise_tangent(double gain, double variance, double w, double d_gain, double d_variance) {
+    const double by_variance = d_variance != 0.0 && w != 0.0 ? gain * w / (2.0 * sqrt(variance)) * d_variance : 0.0;
+    return d_gain * sqrt(variance) * w + by_variance;
 }
 
 void robot_start(Robot *robot) {
@@ -133,18 +133,88 @@ void robot_sample(Robot *robot) {
     draw(robot);
 }
 
+bool robot_is_finite(const Robot *robot) {
+    /* zero times a finite number is zero, times anything else it is none; quicker than eight questions */
+    const double pose = 0.0 * robot->x + 0.0 * robot->y + 0.0 * robot->theta;
+    const double measured = 0.0 * robot->x_meas + 0.0 * robot->y_meas + 0.0 * robot->theta_meas;
+    return pose + measured + 0.0 * robot->v + 0.0 * robot->omega == 0.0;
+}
+
+double robot_to_sample(const Robot *robot) {
+    return robot->sample_time - robot->elapsed;
+}
+
+bool robot_is_due(const Robot *robot) {
+    return robot->elapsed >= robot->sample_time;
+}
+
+void robot_move(Robot *robot, double step) {
+    const double to_sample = robot_to_sample(robot);
+    const bool reached = step >= to_sample - TIME_TOLERANCE * robot->sample_time;
+    robot_speeds(robot);
+    move(robot, reached ? to_sample : step);
+    robot->elapsed = reached ? robot->sample_time : robot->elapsed + step;
+}
+
 void robot_step(Robot *robot, double step) {
-    const double tolerance = TIME_TOLERANCE * robot->sample_time;
-    while (step > tolerance) {
-        const double to_sample = robot->sample_time - robot->elapsed;
-        robot_speeds(robot);
-        if (step < to_sample - tolerance) {
-            move(robot, step);
-            robot->elapsed += step;
-            return;
+    while (step > TIME_TOLERANCE * robot->sample_time) {
+        const double to_sample = robot_to_sample(robot);
+        robot_move(robot, step);
+        if (robot_is_due(robot)) {
+            robot_sample(robot);
         }
-        move(robot, to_sample);
-        robot_sample(robot);
         step -= to_sample;
     }
+}
+
+static void start_tangent(const Robot *robot, const Robot *d, Robot *change) {
+    double w[2], v[3];
+    draw_normal(robot, w, v);
+    const double shaken = robot->wheel_noise_gain, misread = robot->measurement_noise_gain;
+    const double d_shaken = d->wheel_noise_gain, d_misread = d->measurement_noise_gain;
+    change->x = d->x_start;
+    change->y = d->y_start;
+    change->theta = d->theta_start;
+    change->wheel_noise_left =
+        noise_tangent(shaken, robot->wheel_noise_variance, w[0], d_shaken, d->wheel_noise_variance);
+    change->wheel_noise_right =
+        noise_tangent(shaken, robot->wheel_noise_variance, w[1], d_shaken, d->wheel_noise_variance);
+    change->x_meas = d->x_start + noise_tangent(misread, robot->measurement_variance_x, v[0], d_misread,
+                                                d->measurement_variance_x);
+    change->y_meas = d->y_start + noise_tangent(misread, robot->measurement_variance_y, v[1], d_misread,
+                                                d->measurement_variance_y);
+    change->theta_meas = d->theta_start + noise_tangent(misread, robot->measurement_variance_theta, v[2], d_misread,
+                                                        d->measurement_variance_theta);
+}
+
+/* (1), differentiated. */
+static void speeds_tangent(const Robot *robot, const Robot *d, Robot *change) {
+    const double grip = 1.0 - robot->wheel_slip, d_grip = -d->wheel_slip;
+    const double r = true_radius(robot), L = true_track(robot);
+    const double d_r = d->wheel_radius * (1.0 + robot->wheel_radius_error) + robot->wheel_radius * d->wheel_radius_error;
+    const double d_L = d->track * (1.0 + robot->track_error) + robot->track * d->track_error;
+    const double left = drive_speed(robot, robot->drive_left, robot->omega_left) + robot->wheel_noise_left;
+    const double right = drive_speed(robot, robot->drive_right, robot->omega_right) + robot->wheel_noise_right;
+    const double d_left =
+        drive_tangent(robot, robot->drive_left, robot->omega_left, d, d->omega_left) + change->wheel_noise_left;
+    const double d_right =
+        drive_tangent(robot, robot->drive_right, robot->omega_right, d, d->omega_right) + change->wheel_noise_right;
+    const double gain = grip * r, d_gain = d_grip * r + grip * d_r;
+    change->v = (gain * (d_right + d_left) + d_gain * (right + left)) / 2.0;
+    change->omega = (gain * (d_right - d_left) + d_gain * (right - left) - robot->omega * d_L) / L;
+}
+
+/* With T, A_k = I + T (der by x, y, theta) is (31) and W_k = T (der by the wheels) is (32), columns left, right. */
+void robot_tangent(const Robot *robot, const Robot *direction, bool starting, Robot *change) {
+    *change = *direction;
+    change->wheel_noise_left = change->wheel_noise_right = 0.0;
+    change->x_meas = change->y_meas = change->theta_meas = 0.0;
+    if (starting) {
+        start_tangent(robot, direction, change);
+    }
+    speeds_tangent(robot, direction, change);
+    const double c = cos(robot->theta), s = sin(robot->theta);
+    change->der_x = change->v * c - robot->v * s * change->theta;
+    change->der_y = change->v * s + robot->v * c * change->theta;
+    change->der_theta = change->omega;
 }

@@ -6,6 +6,7 @@
 #ifndef LAGLAB_ROBOT_H
 #define LAGLAB_ROBOT_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 enum { INTEGRATION_EULER = 1, INTEGRATION_EXACT = 2 };
@@ -18,6 +19,8 @@ typedef struct {
     double x_start, y_start, theta_start;
     double wheel_speed_max, motor_time_constant, wheel_radius_error, track_error, wheel_slip;
     int64_t seed, noise, integration;
+    /* parameters that may change on the way */
+    double wheel_noise_gain, measurement_noise_gain;
     /* inputs: commanded wheel speeds */
     double omega_left, omega_right;
     /* continuous states */
@@ -42,13 +45,20 @@ void robot_speeds(Robot *robot);
 /* der_x, der_y, der_theta at the present pose, after `robot_speeds`. */
 void robot_derivatives(Robot *robot);
 
-/* Partial derivatives of the continuous equations at the present state and inputs, after `robot_speeds`. */
-enum { BY_X, BY_Y, BY_THETA, BY_OMEGA_LEFT, BY_OMEGA_RIGHT, KNOWNS };
-enum { OF_X, OF_Y, OF_THETA, OF_V, OF_OMEGA, OF_DER_X, OF_DER_Y, OF_DER_THETA, OF_SAMPLED, UNKNOWNS };
-void robot_partials(const Robot *robot, double partial[UNKNOWNS][KNOWNS]);
+/* First-order change of outputs and derivatives along `direction`, which holds the changes of what they follow from:
+ * inputs and pose or, when `starting`, inputs and parameters. Call after `robot_speeds`. */
+void robot_tangent(const Robot *robot, const Robot *direction, bool starting, Robot *change);
 
 /* Moves the robot over `step` > 0 seconds with its inputs held, sampling where the sample grid says. */
 void robot_step(Robot *robot, double step);
+
+/* The same in pieces: the time that is left to the next sample, a move that ends there at most, whether it is there. */
+double robot_to_sample(const Robot *robot);
+void robot_move(Robot *robot, double step);
+bool robot_is_due(const Robot *robot);
+
+/* Whether neither outputs have overflowed, after `robot_speeds`. */
+bool robot_is_finite(const Robot *robot);
 
 /* Takes the next sample here and now: fresh noise and a fresh measurement. */
 void robot_sample(Robot *robot);

@@ -1,7 +1,7 @@
 /* Saved states. The noise needs none of its own: it follows from seed and sample, which are in the Robot.
  *
- * Serialized: little-endian words of eight bytes: the checksum of all that follows and of the model's token, the head,
- * then the robots' fields in order.
+ * Serialized: little-endian words of eight bytes: the checksum of all that follows and of a token, the head, then the
+ * robots' fields in order. The token is one and the same for all FMUs: they understand each other's states.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -12,7 +12,7 @@
 
 typedef struct {
     uint64_t robots, kind, mode;
-    double start_time, time;
+    double start_time, stop_time, time;
 } Head;
 
 struct SavedState {
@@ -41,7 +41,8 @@ Status instance_save(const Instance *instance, SavedState **state) {
         return instance_log(instance, STATUS_ERROR, "no memory to save the state of %zu robots", instance->robots);
     }
     saved->zero = 0;
-    saved->head = (Head){instance->robots, instance->kind, instance->mode, instance->start_time, instance->time};
+    saved->head = (Head){instance->robots, instance->kind, instance->mode, instance->start_time, instance->stop_time,
+                         instance->time};
     memcpy(saved->robot, instance->robot, instance->robots * sizeof(Robot));
     *state = saved;
     return STATUS_OK;
@@ -51,11 +52,15 @@ Status instance_restore(Instance *instance, const SavedState *state) {
     const Head *head = &state->head;
     if (head->kind != (uint64_t)instance->kind || head->robots != instance->robots) {
         return instance_log(instance, STATUS_ERROR, "the saved state is of %zu robot(s) in %s, the instance of %zu in %s",
-                            (size_t)head->robots, head->kind == CO_SIMULATION ? "co-simulation" : "model exchange",
-                            instance->robots, instance->kind == CO_SIMULATION ? "co-simulation" : "model exchange");
+                            (size_t)head->robots, head->kind == KIND_CO_SIMULATION ? "co-simulation" : "model exchange",
+                            instance->robots, instance->kind == KIND_CO_SIMULATION ? "co-simulation" : "model exchange");
+    }
+    if (head->mode == MODE_STEP_EVENT && !instance->event_mode) {
+        return instance_log(instance, STATUS_ERROR, "the saved state is in event mode, which the instance does not use");
     }
     instance->mode = (Mode)head->mode;
     instance->start_time = head->start_time;
+    instance->stop_time = head->stop_time;
     instance->time = head->time;
     memcpy(instance->robot, state->robot, instance->robots * sizeof(Robot));
     instance->stale = true;
@@ -99,7 +104,7 @@ static uint64_t add_to_checksum(uint64_t sum, const void *bytes, size_t size) {
 }
 
 static uint64_t checksum(const unsigned char *bytes, size_t size) {
-    const uint64_t token = add_to_checksum(0xCBF29CE484222325, MODEL_TOKEN, sizeof MODEL_TOKEN);
+    const uint64_t token = add_to_checksum(0xCBF29CE484222325, TOKEN_ROBOT3, sizeof TOKEN_ROBOT3);
     return add_to_checksum(token, bytes + WORD, size - WORD);
 }
 
@@ -115,18 +120,19 @@ Status state_serialize(const Instance *instance, const SavedState *state, unsign
 }
 
 static bool head_is_sound(const Head *head) {
-    const int modes = head->kind == CO_SIMULATION ? MODE_STEP : MODE_EVENT | MODE_CONTINUOUS_TIME;
+    const int modes = head->kind == KIND_CO_SIMULATION ? MODE_STEP | MODE_STEP_EVENT : MODE_EVENT | MODE_CONTINUOUS_TIME;
     const int any = modes | MODES_START | MODE_CONFIGURATION | MODE_TERMINATED;
     const bool one_mode = head->mode != 0 && (head->mode & (head->mode - 1)) == 0;
-    return (head->kind == CO_SIMULATION || head->kind == MODEL_EXCHANGE) && one_mode &&
-           (head->mode & ~(uint64_t)any) == 0 && isfinite(head->start_time) && isfinite(head->time);
+    return (head->kind == KIND_CO_SIMULATION || head->kind == KIND_MODEL_EXCHANGE) && one_mode &&
+           (head->mode & ~(uint64_t)any) == 0 && isfinite(head->start_time) && isfinite(head->time) &&
+           head->start_time <= head->stop_time;
 }
 
 /* The name of a field whose value no run could have reached; NULL when there is none. */
 static const char *unsound_field(const Robot *robot) {
     for (size_t i = 0; i < VARIABLES; i++) {
         const Variable *variable = &VARIABLE[i];
-        if (variable->role != ROLE_PARAMETER && variable->role != ROLE_INPUT) {
+        if (!is_settable(variable)) {
             continue;
         }
         double value;

@@ -55,6 +55,31 @@ static double *copy_floats(const Instance *instance, const Variable *variable, d
     return values;
 }
 
+Status instance_check_value(const Instance *instance, const char *name, size_t robot, double value) {
+    if (isfinite(value)) {
+        return STATUS_OK;
+    }
+    return instance_log(instance, STATUS_ERROR, "%s of robot %zu is %g: its inputs or parameters are too large", name, robot,
+                        value);
+}
+
+Status instance_check_finite(Instance *instance) {
+    instance_refresh(instance);
+    for (size_t k = 0; k < instance->robots; k++) {
+        if (robot_is_finite(&instance->robot[k])) {
+            continue;
+        }
+        for (size_t i = 0; i < VARIABLES; i++) {
+            double value;
+            memcpy(&value, slot(&instance->robot[k], &VARIABLE[i]), sizeof value);
+            if (VARIABLE[i].role == ROLE_OUTPUT && !isfinite(value)) {
+                return instance_check_value(instance, VARIABLE[i].name, k, value);
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
 Status instance_get_floats(Instance *instance, const uint32_t references[], size_t count, double values[], size_t size,
                            const char *call) {
     const Status status = instance_check_size(instance, TYPE_FLOAT64, references, count, size, call);
@@ -67,33 +92,47 @@ Status instance_get_floats(Instance *instance, const uint32_t references[], size
         for (size_t k = 0; variable->role == ROLE_DERIVATIVE && k < instance->robots; k++) {
             robot_derivatives(&instance->robot[k]);
         }
+        const double *first = values;
         values = copy_floats(instance, variable, values);
+        for (const double *value = first; value < values; value++) {
+            if (instance_check_value(instance, variable->name, (size_t)(value - first), *value) != STATUS_OK) {
+                return STATUS_ERROR;
+            }
+        }
     }
     return STATUS_OK;
 }
 
 static Status check_settable(const Instance *instance, const Variable *variable, const char *call) {
-    const int modes = variable->role == ROLE_PARAMETER ? MODES_START
-                      : variable->role == ROLE_INPUT   ? MODES_START | MODES_RUN
-                      : variable->role == ROLE_ROBOTS  ? MODE_CONFIGURATION
-                                                       : 0;
+    static const struct {
+        int modes;
+        const char *when;
+    } ALLOWED[] = {
+        [ROLE_PARAMETER] = {MODES_START, "before the simulation starts"},
+        [ROLE_TUNABLE] = {MODES_START | MODE_EVENT | MODE_STEP | MODE_STEP_EVENT, "before the start, at events and between steps"},
+        [ROLE_INPUT] = {MODES_START | MODES_RUN, "before the simulation ends"},
+        [ROLE_ROBOTS] = {MODE_CONFIGURATION, "in configuration mode"},
+        [ROLE_DERIVATIVE] = {0, NULL},
+    };
+    const int modes = ALLOWED[variable->role].modes;
     if (!modes) {
         return instance_log(instance, STATUS_ERROR, "%s: %s cannot be set", call, variable->name);
     }
     if (!(instance->mode & modes)) {
         return instance_log(instance, STATUS_ERROR, "%s: %s cannot be set now, only %s", call, variable->name,
-                            variable->role == ROLE_PARAMETER ? "before the simulation starts"
-                            : variable->role == ROLE_INPUT   ? "before the simulation ends"
-                                                             : "in configuration mode");
+                            ALLOWED[variable->role].when);
     }
     return STATUS_OK;
 }
 
 static Status check_range(const Instance *instance, const Variable *variable, double value, const char *call) {
-    if (isfinite(value) && value >= variable->minimum && value <= variable->maximum) {
+    if (!isfinite(value)) {
+        return instance_log(instance, STATUS_DISCARD, "%s: %s = %g refused: it must be finite", call, variable->name, value);
+    }
+    if (value >= variable->minimum && value <= variable->maximum) {
         return STATUS_OK;
     }
-    return instance_log(instance, STATUS_DISCARD, "%s: %s = %g refused: it must be finite and in [%g, %g]", call,
+    return instance_log(instance, STATUS_DISCARD, "%s: %s = %g refused: it must be in [%g, %g]", call,
                         variable->name, value, variable->minimum, variable->maximum);
 }
 

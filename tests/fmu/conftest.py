@@ -1,28 +1,34 @@
 """The FMUs under test, built once from the sources as they are, and fmpy instances of them."""
 
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import fmpy
 import pytest
+from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Model, FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Model, FMU3Slave
 
 from laglab_fmu import build_fmus
 from laglab_fmu import slave as slave_module
 from laglab_fmu.compiler import host_platform
-from laglab_fmu.description import TOKEN
+from laglab_fmu.description import token
 from laglab_fmu.variables import MODEL_NAME, REFERENCE, VARIABLES, Kind
 
 
 class Face:
     """An fmpy instance; calls that differ between the versions have one name here."""
 
-    def __init__(self, name: str, kind: str, folder: Path, debug: bool) -> None:
+    def __init__(self, name: str, kind: str, folder: Path, debug: bool, **options: Any) -> None:
         self.version, self.kind = int(name[-1]), kind
         self.messages: list[tuple[int, str, str]] = []
-        arguments = {"guid": TOKEN, "modelIdentifier": MODEL_NAME, "unzipDirectory": str(folder)}
+        arguments = {
+            "guid": token(name),
+            "modelIdentifier": name[:-1],
+            "unzipDirectory": str(folder),
+        }
         if self.version == 2:
             platform = host_platform()
             inside = f"binaries/{platform.fmi2_folder}/{MODEL_NAME}{platform.suffix}"
@@ -33,7 +39,9 @@ class Face:
             callbacks.logger = fmi2CallbackLoggerTYPE(lambda _, _name, *entry: self._logged(*entry))
             self.fmu.instantiate(callbacks=callbacks, loggingOn=debug)
         else:
-            self.fmu.instantiate(loggingOn=debug, logMessage=lambda _, *entry: self._logged(*entry))
+            self.fmu.instantiate(
+                loggingOn=debug, logMessage=lambda _, *entry: self._logged(*entry), **options
+            )
 
     def _logged(self, status: int, category: bytes, text: bytes) -> None:
         self.messages.append((status, category.decode(), text.decode()))
@@ -50,14 +58,15 @@ class Face:
         getter = self.fmu.getReal if self.version == 2 else self.fmu.getFloat64
         return list(getter([REFERENCE[name] for name in names]))
 
-    def start(self, time: float = 0.0, **values: float) -> None:
+    def start(self, time: float = 0.0, stop: float | None = None, **values: float) -> None:
         """Sets parameters and leaves initialization mode."""
         self.set(**values)
+        experiment = {"startTime": time, "stopTime": stop}
         if self.version == 2:
-            self.fmu.setupExperiment(startTime=time)
+            self.fmu.setupExperiment(**experiment)
             self.fmu.enterInitializationMode()
         else:
-            self.fmu.enterInitializationMode(startTime=time)
+            self.fmu.enterInitializationMode(**experiment)
         self.fmu.exitInitializationMode()
 
     def step(self, time: float, step: float = 0.01) -> None:
@@ -87,6 +96,18 @@ class Face:
         self.free(state)
         return data
 
+    @contextmanager
+    def refused(self, status: int, *words: str) -> Iterator[None]:
+        """Expects a call to fail with this status and to log one line with these words."""
+        self.messages.clear()
+        with pytest.raises(FMICallException) as error:
+            yield
+        assert error.value.status == status
+        [(logged, category, line)] = self.messages
+        assert (logged, category) == (status, _CATEGORIES[status])
+        assert "\n" not in line
+        assert all(word in line for word in words), line
+
     def become(self, data: bytes) -> None:
         """What another was when it was packed."""
         state = self.deserialize(data)
@@ -100,6 +121,7 @@ _CLASSES = {
     (3, "CoSimulation"): FMU3Slave,
     (3, "ModelExchange"): FMU3Model,
 }
+_CATEGORIES = {2: "logStatusDiscard", 3: "logStatusError"}
 _TYPE_NAMES = {
     Kind.FLOAT64: ("Real", "Float64"),
     Kind.INT32: ("Integer", "Int32"),
@@ -136,8 +158,8 @@ def make_face(extracted: dict[str, Path]) -> Iterator[MakeFace]:
     """`make_face("Robot3", "CoSimulation")`: an instance that lives as long as the test."""
     made: list[Face] = []
 
-    def make(name: str, kind: str, debug: bool = False) -> Face:
-        made.append(Face(name, kind, extracted[name], debug))
+    def make(name: str, kind: str, debug: bool = False, **options: Any) -> Face:
+        made.append(Face(name, kind, extracted[name], debug, **options))
         return made[-1]
 
     yield make

@@ -1,6 +1,6 @@
 /* A small importer: loads the FMU's library, drives the robot by FMI 2.0 and by FMI 3.0, prints its pose in hexadecimal.
  *
- * It does not link the mathematics library, so the FMU has to bring its own need of it. Usage: host LIBRARY TOKEN TICKS
+ * It does not link the mathematics library, so the FMU has to bring its own need of it. Usage: host LIBRARY TICKS
  */
 #include <dlfcn.h>
 #include <stdio.h>
@@ -31,7 +31,7 @@ static void print(const double pose[3]) {
     printf("%a %a %a\n", pose[0], pose[1], pose[2]);
 }
 
-static int drive2(void *library, const char *token, int ticks) {
+static int drive2(void *library, int ticks) {
     LOAD(fmi2Instantiate);
     LOAD(fmi2SetupExperiment);
     LOAD(fmi2EnterInitializationMode);
@@ -42,7 +42,7 @@ static int drive2(void *library, const char *token, int ticks) {
     LOAD(fmi2FreeInstance);
     double pose[3];
     const fmi2CallbackFunctions none = {0};
-    fmi2Component robot = fmi2Instantiate("robot", fmi2CoSimulation, token, "", &none, 0, 0);
+    fmi2Component robot = fmi2Instantiate("robot", fmi2CoSimulation, TOKEN_ROBOT2, "", &none, 0, 0);
     DO(!robot)
     DO(fmi2SetupExperiment(robot, 0, 0.0, 0.0, 0, 0.0))
     DO(fmi2EnterInitializationMode(robot))
@@ -57,7 +57,7 @@ static int drive2(void *library, const char *token, int ticks) {
     return 0;
 }
 
-static int drive3(void *library, const char *token, int ticks) {
+static int drive3(void *library, int ticks) {
     LOAD(fmi3InstantiateCoSimulation);
     LOAD(fmi3EnterInitializationMode);
     LOAD(fmi3ExitInitializationMode);
@@ -68,7 +68,7 @@ static int drive3(void *library, const char *token, int ticks) {
     double pose[3], last;
     bool event, end, early;
     fmi3Instance robot =
-        fmi3InstantiateCoSimulation("robot", token, "", false, false, false, false, NULL, 0, NULL, NULL, NULL);
+        fmi3InstantiateCoSimulation("robot", TOKEN_ROBOT3, "", false, false, false, false, NULL, 0, NULL, NULL, NULL);
     DO(!robot)
     DO(fmi3EnterInitializationMode(robot, false, 0.0, 0.0, false, 0.0))
     DO(fmi3ExitInitializationMode(robot))
@@ -83,12 +83,12 @@ static int drive3(void *library, const char *token, int ticks) {
 }
 
 int main(int count, char **arguments) {
-    if (count != 4) return 2;
+    if (count != 3) return 2;
     void *library = dlopen(arguments[1], RTLD_NOW | RTLD_LOCAL);
     if (!library) {
         fprintf(stderr, "%s\n", dlerror());
         return 1;
     }
-    const int ticks = atoi(arguments[3]);
-    return drive2(library, arguments[2], ticks) || drive3(library, arguments[2], ticks) || dlclose(library);
+    const int ticks = atoi(arguments[2]);
+    return drive2(library, ticks) || drive3(library, ticks) || dlclose(library);
 }

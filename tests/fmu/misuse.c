@@ -40,6 +40,23 @@ static void note3(void *environment, fmi3Status status, fmi3String category, fmi
     lines_logged += status > fmi3OK && category && *text && !strchr(text, '\n');
 }
 
+static fmi3Instance in_step;
+static unsigned long updates;
+
+/* Reads what may be read there, tries what may not, and leaves one step in four. */
+static void update3(void *environment, double time, bool set, bool get, bool finished, bool can_return, bool *early, double *at) {
+    const uint32_t x = VR_X;
+    double value;
+    size_t size;
+    fmi3FMUState none = NULL;
+    (void)environment;
+    updates += fmi3GetFloat64(in_step, &x, 1, &value, 1) == fmi3OK && get && finished && !set && isfinite(time);
+    if (fmi3Reset(in_step) == fmi3OK || fmi3Terminate(in_step) == fmi3OK) abort();
+    if (fmi3GetFMUState(in_step, &none) == fmi3OK || fmi3SerializedFMUStateSize(in_step, none, &size) == fmi3OK) abort();
+    *early = can_return && !draw(4);
+    *at = number();
+}
+
 static uint32_t references[MOST];
 static double floats[MOST], answers[MOST];
 static int32_t integers[MOST];
@@ -75,7 +92,7 @@ static void damage(void) {
     if (draw(2) && bytes_used > 64) memcpy(bytes + 8 * draw(bytes_used / 8), &value, sizeof value);
     if (!draw(4)) bytes_used = draw(bytes_used + 9);
     if (draw(2) && bytes_used > 8) {
-        const uint64_t sum = fold(fold(0xCBF29CE484222325, MODEL_TOKEN, sizeof MODEL_TOKEN), bytes + 8, bytes_used - 8);
+        const uint64_t sum = fold(fold(0xCBF29CE484222325, TOKEN_ROBOT3, sizeof TOKEN_ROBOT3), bytes + 8, bytes_used - 8);
         memcpy(bytes, &sum, sizeof sum);
     }
 }
@@ -88,7 +105,7 @@ static void call2(fmi2Component c, fmi2FMUstate *state) {
     fmi2Real *in = draw(20) ? floats : NULL, *out = draw(20) ? answers : NULL;
     const uint32_t *vr = draw(20) ? references : NULL;
     switch (draw(31)) {
-        case 0: fmi2SetupExperiment(c, 0, 0, draw(9) ? 0.0 : number(), 0, 0); break;
+        case 0: fmi2SetupExperiment(c, 0, 0, draw(9) ? 0.0 : number(), !draw(9), number()); break;
         case 1: fmi2EnterInitializationMode(c); break;
         case 2: fmi2ExitInitializationMode(c); break;
         case 3: if (!draw(20)) fmi2Terminate(c); break;
@@ -134,10 +151,10 @@ static void call3(fmi3Instance c, fmi3FMUState *state) {
     fmi3Boolean b[5];
     fmi3Float64 *in = draw(20) ? floats : NULL, *out = draw(20) ? answers : NULL;
     const uint32_t *vr = draw(20) ? references : NULL;
-    switch (draw(34)) {
+    switch (draw(35)) {
         case 0: fmi3EnterConfigurationMode(c); break;
         case 1: fmi3ExitConfigurationMode(c); break;
-        case 2: fmi3EnterInitializationMode(c, 0, 0, draw(9) ? 0.0 : number(), 0, 0); break;
+        case 2: fmi3EnterInitializationMode(c, 0, 0, draw(9) ? 0.0 : number(), !draw(9), number()); break;
         case 3: fmi3ExitInitializationMode(c); break;
         case 4: if (!draw(20)) fmi3Terminate(c); break;
         case 5: if (!draw(20)) fmi3Reset(c); break;
@@ -157,6 +174,7 @@ static void call3(fmi3Instance c, fmi3FMUState *state) {
         case 16:
             references[0] = VR_TIME;
             if (draw(9)) fmi3GetFloat64(c, references, 1, floats, 1);
+            in_step = c;
             fmi3DoStep(c, floats[0], draw(2) ? 0.013 : floats[1] < 1e4 ? floats[1] : -1, 1, b, b + 1, b + 2, out);
             break;
         case 17: fmi3GetFMUState(c, draw(20) ? state : NULL); break;
@@ -177,6 +195,7 @@ static void call3(fmi3Instance c, fmi3FMUState *state) {
         case 29: fmi3SetTime(c, floats[0]); break;
         case 30: fmi3SetContinuousStates(c, in, 3 * draw(4)); break;
         case 31: fmi3GetContinuousStateDerivatives(c, out, 3 * draw(4)); break;
+        case 33: fmi3EnterStepMode(c); break;
         case 32: fmi3GetFloat32(c, vr, n, NULL, m); break;
         default: fmi3GetNominalsOfContinuousStates(draw(20) ? c : NULL, out, 3 * draw(4));
     }
@@ -191,12 +210,12 @@ static int works2(fmi2Component c, int co_simulation) {
            isfinite(value);
 }
 
-static int works3(fmi3Instance c, int co_simulation) {
+static int works3(fmi3Instance c, int co_simulation, int events) {
     const uint32_t time = VR_TIME;
     double value, last;
     fmi3Boolean b[3];
     return fmi3Reset(c) == fmi3OK && fmi3EnterInitializationMode(c, 0, 0, 0, 0, 0) == fmi3OK &&
-           fmi3ExitInitializationMode(c) == fmi3OK &&
+           fmi3ExitInitializationMode(c) == fmi3OK && (!events || fmi3EnterStepMode(c) == fmi3OK) &&
            (!co_simulation || fmi3DoStep(c, 0, 0.01, 1, b, b + 1, b + 2, &last) == fmi3OK) &&
            fmi3GetFloat64(c, &time, 1, &value, 1) == fmi3OK && value == (co_simulation ? 0.01 : 0.0);
 }
@@ -206,26 +225,33 @@ int main(int count, char **arguments) {
     random_state = strtoull(arguments[1], NULL, 10) * 2654435761u + 1;
     const unsigned long calls = strtoul(arguments[2], NULL, 10);
     const fmi2CallbackFunctions functions = {.logger = note2};
-    fmi2Component c2[2] = {fmi2Instantiate("a", fmi2CoSimulation, MODEL_TOKEN, NULL, &functions, 0, 0),
-                           fmi2Instantiate("b", fmi2ModelExchange, MODEL_TOKEN, NULL, &functions, 0, 1)};
-    fmi3Instance c3[2] = {fmi3InstantiateCoSimulation("c", MODEL_TOKEN, NULL, 0, 0, 0, 0, NULL, 0, NULL, note3, NULL),
-                          fmi3InstantiateModelExchange("d", MODEL_TOKEN, NULL, 0, 1, NULL, note3)};
+    fmi2Component c2[2] = {fmi2Instantiate("a", fmi2CoSimulation, TOKEN_ROBOT2, NULL, &functions, 0, 0),
+                           fmi2Instantiate("b", fmi2ModelExchange, TOKEN_ROBOT2, NULL, &functions, 0, 1)};
+    fmi3Instance c3[4] = {fmi3InstantiateCoSimulation("c", TOKEN_ROBOT3, NULL, 0, 0, 0, 0, NULL, 0, NULL, note3, NULL),
+                          fmi3InstantiateModelExchange("d", TOKEN_FLEET3, NULL, 0, 1, NULL, note3),
+                          fmi3InstantiateCoSimulation("h", TOKEN_FLEET3, NULL, 0, 0, 0, 1, NULL, 0, NULL, note3, update3),
+                          fmi3InstantiateCoSimulation("i", TOKEN_ROBOT3, NULL, 0, 0, 1, 0, NULL, 0, NULL, note3, update3)};
     fmi2FMUstate state2 = NULL;
     fmi3FMUState state3 = NULL;
     if (fmi2Instantiate("e", fmi2CoSimulation, "wrong", NULL, NULL, 0, 0)) return 1;
+    if (fmi2Instantiate("f", fmi2CoSimulation, TOKEN_ROBOT3, NULL, NULL, 0, 0)) return 1;
+    if (fmi2Instantiate("g", (fmi2Type)7, TOKEN_ROBOT2, NULL, NULL, 0, 0)) return 1;
     if (fmi3InstantiateModelExchange(NULL, NULL, NULL, 0, 0, NULL, NULL)) return 1;
     for (unsigned long i = 0; i < calls; i++) {
         call2(c2[draw(2)], &state2);
-        call3(c3[draw(2)], &state3);
+        call3(c3[draw(4)], &state3);
     }
     int ok = lines_logged > calls / 4;
-    for (int i = 0; i < 2; i++) ok = ok && works2(c2[i], !i) && works3(c3[i], !i);
+    for (int i = 0; i < 2; i++) ok = ok && works2(c2[i], !i) && works3(c3[i], !i, 0);
+    for (int i = 2; i < 4; i++) {
+        in_step = c3[i];
+        const unsigned long before = updates;
+        ok = ok && works3(c3[i], 1, i == 3) && (i == 3 || updates > before);
+    }
     fmi2FreeFMUstate(c2[0], &state2);
     fmi3FreeFMUState(c3[0], &state3);
-    for (int i = 0; i < 2; i++) {
-        fmi2FreeInstance(c2[i]);
-        fmi3FreeInstance(c3[i]);
-    }
-    printf("%lu lines logged\n", lines_logged);
+    for (int i = 0; i < 2; i++) fmi2FreeInstance(c2[i]);
+    for (int i = 0; i < 4; i++) fmi3FreeInstance(c3[i]);
+    printf("%lu lines logged, %lu intermediate updates\n", lines_logged, updates);
     return ok ? 0 : 1;
 }

@@ -49,7 +49,7 @@ def test_both_versions_tell_the_same_of_every_variable(fmus: dict[str, Path]) ->
 @pytest.mark.parametrize("name", ["Robot2", "Robot3"])
 def test_a_robot_left_alone_has_the_default_parameters(fmus: dict[str, Path], name: str) -> None:
     variables = read_model_description(str(fmus[name])).modelVariables
-    starts = {v.name: v.start for v in variables if v.causality == "parameter"}
+    starts = {v.name: v.start for v in variables if v.variability == "fixed"}
     truth = {"true": 1.0, "false": 0.0}
     told = {key: truth[start] if start in truth else float(start) for key, start in starts.items()}
     assert told == RobotParameters().by_name()

@@ -13,8 +13,8 @@ from fmpy.util import read_csv
 from fmpy.validation import validate_fmu
 from lxml import etree
 
-from laglab_fmu.build import FMUS
 from laglab_fmu.contents import REFERENCE_LAYER, own_files
+from laglab_fmu.description import FMUS
 from laglab_fmu.variables import VARIABLES, Role
 
 ROOT = Path(__file__).parents[2]
@@ -50,9 +50,25 @@ def test_every_variable_has_type_unit_and_display_unit(fmus: dict[str, Path], na
             assert declared.unit, variable.name
             assert declared.displayUnit, variable.name
         assert variable.description
-    faces = {"CoSimulation"} if name == "Fleet3" else {"CoSimulation", "ModelExchange"}
-    given = {"CoSimulation": model.coSimulation, "ModelExchange": model.modelExchange}
-    assert {face for face, value in given.items() if value} == faces
+    assert model.coSimulation
+    assert model.modelExchange
+
+
+def test_the_size_of_a_fleet_comes_before_what_it_sizes(extracted: dict[str, Path]) -> None:
+    """Importers follow a dimension as soon as they read it."""
+    model = etree.parse(extracted["Fleet3"] / "modelDescription.xml").find("ModelVariables")
+    read: set[str] = set()
+    for variable in model:
+        read.add(variable.get("valueReference"))
+        assert {dimension.get("valueReference") for dimension in variable} <= read
+    assert len(read) == len(VARIABLES)
+
+
+def test_every_fmu_has_a_token_of_its_own(fmus: dict[str, Path]) -> None:
+    models = [read_model_description(str(path)) for path in fmus.values()]
+    assert len({model.guid for model in models}) == len(FMUS)
+    for model, name in zip(models, fmus, strict=True):
+        assert model.coSimulation.modelIdentifier == model.modelName == name[:-1]
 
 
 def test_fmi_2_leaves_time_out_and_gives_a_tolerance(fmus: dict[str, Path]) -> None:
@@ -104,16 +120,16 @@ def test_licences_are_inside(extracted: dict[str, Path], name: str) -> None:
     assert "2-Clause BSD" in (licences / "fmi-headers.txt").read_text()
 
 
-@pytest.mark.parametrize("name", ["Robot2", "Robot3"])
+@pytest.mark.parametrize("name", FMUS)
 def test_reference_results_are_listed_and_current(extracted: dict[str, Path], name: str) -> None:
     """After a change that is meant to change them, run fmu/reference_results.py."""
     layer = extracted[name] / "extra" / REFERENCE_LAYER
     manifest = etree.parse(layer / "fmi-ls-manifest.xml").getroot()
     listed = {related.get("role"): related.get("source") for related in manifest}
-    assert listed == {"input": "Robot_in.csv", "result": "Robot_out.csv"}
+    assert listed == {"input": f"{name[:-1]}_in.csv", "result": f"{name[:-1]}_out.csv"}
     given, results = read_csv(layer / listed["input"]), read_csv(layer / listed["result"])
     assert given.dtype.names == ("time", "omega_left", "omega_right")
-    assert (layer / "Robot_out.csv").read_bytes() == (
+    assert (layer / listed["result"]).read_bytes() == (
         own_files("content") / "Robot_out.csv"
     ).read_bytes()
     assert np.ptp(results["time"]) == 10.0

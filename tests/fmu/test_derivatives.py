@@ -2,15 +2,17 @@
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from fmpy import read_model_description
 from fmpy.fmi1 import FMICallException
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from laglab_fmu.variables import REFERENCE
+from laglab_fmu.variables import REFERENCE, VARIABLES, Kind
 
 Ts, r, L = 0.01, 0.05, 0.6
 STATES, WHEELS = ("x", "y", "theta"), ("omega_left", "omega_right")
@@ -96,6 +98,53 @@ def test_they_agree_with_differences(
     for column, unit in enumerate(np.eye(3)):
         difference = at(*(point + step * unit))[1] - at(*(point - step * unit))[1]
         np.testing.assert_allclose(J[:, column], difference / (2 * step), atol=1e-7)
+
+
+@pytest.mark.parametrize("name", ["Robot2", "Robot3", "Fleet3"])
+def test_at_the_start_they_agree_with_differences_by_every_known(
+    make_face: Callable[..., Any], extracted: dict[str, Path], name: str
+) -> None:
+    """And an unknown depends on those knowns that the description says, on no other."""
+    model = read_model_description(str(extracted[name]))
+    face = make_face(name, "CoSimulation")
+    face.set(motor_time_constant=0.1, wheel_speed_max=4.0, wheel_radius_error=0.1, track_error=0.2)
+    face.set(wheel_slip=0.3, wheel_noise_gain=2.0, measurement_noise_gain=0.5, theta_start=0.7)
+    face.set(omega_left=3.0, omega_right=5.0, seed=6)
+    if name == "Robot2":
+        face.fmu.setupExperiment()
+    face.fmu.enterInitializationMode()
+    knowns = [v.name for v in model.modelVariables if v.causality in ("input", "parameter")]
+    reals = [known for known in knowns if VARIABLES[REFERENCE[known]].kind is Kind.FLOAT64]
+    unknowns = tuple(unknown.variable.name for unknown in model.initialUnknowns)
+    J = jacobian(face, unknowns, tuple(reals))
+    for column, known in enumerate(reals):
+        [value] = face.get(known)
+        step = 1e-6 * max(abs(value), 0.01)
+        face.set(**{known: value + step})
+        above = np.array(face.get(*unknowns))
+        face.set(**{known: value - step})
+        difference = (above - np.array(face.get(*unknowns))) / (2 * step)
+        face.set(**{known: value})
+        np.testing.assert_allclose(J[:, column], difference, rtol=1e-6, atol=1e-8, err_msg=known)
+    for row, unknown in enumerate(model.initialUnknowns):
+        depends = {known.name for known in unknown.dependencies}
+        assert {known for known, entry in zip(reals, J[row], strict=True) if entry} <= depends
+        assert depends <= set(knowns)
+    idle = [known for known, column in zip(reals, J.T, strict=True) if not column.any()]
+    assert idle == ["omega_right"]  # beyond the limit of its drive
+
+
+def test_a_variance_that_leaves_zero_has_no_derivative(make_face: Callable[..., Any]) -> None:
+    face = make_face("Robot3", "CoSimulation")
+    face.set(measurement_variance_x=0.0)
+    face.fmu.enterInitializationMode()
+    assert jacobian(face, ("x_meas",), ("x_start",)) == [[1.0]]
+    with pytest.raises(FMICallException):
+        jacobian(face, ("x_meas",), ("measurement_variance_x",))
+    assert "the derivative of x_meas is" in face.messages[-1][2]
+    with pytest.raises(FMICallException):
+        jacobian(face, ("x",), ("x",))
+    assert "(x) is not an input or a real parameter" in face.messages[-1][2]
 
 
 def test_the_adjoint_is_the_transpose(make_face: Callable[..., Any]) -> None:

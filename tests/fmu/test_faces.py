@@ -59,6 +59,19 @@ def test_model_exchange_by_euler_agrees(fmus: dict[str, Path], name: str) -> Non
     np.testing.assert_allclose(after[1:-1], stepped()[:-1], rtol=0, atol=1e-11)
 
 
+def test_a_fleet_in_model_exchange_is_the_robot(fmus: dict[str, Path]) -> None:
+    """By FMPy, which leaves a fleet its default size."""
+    settings: dict[str, Any] = {"stop_time": 0.3, "output_interval": 0.01}
+    for solver in ("CVode", "Euler"):
+        settings |= {"solver": solver, "step_size": 0.01 if solver == "Euler" else None}
+        robot, fleet = (
+            simulate_fmu(str(fmus[name]), fmi_type="ModelExchange", **settings)
+            for name in ("Robot3", "Fleet3")
+        )
+        for output in Reading._fields:
+            assert (fleet[output].ravel() == robot[output]).all()
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_model_exchange_by_cvode_agrees_with_exact_co_simulation(
     fmus: dict[str, Path], name: str
@@ -111,7 +124,7 @@ def test_noise_changes_at_sample_events_only(make_face: Callable[..., Any], name
     assert face.get("v", "omega", "x_meas") != at_start
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [*NAMES, "Fleet3"])
 def test_the_command_line_gives_the_same_path(
     fmus: dict[str, Path], tmp_path: Path, name: str
 ) -> None:

@@ -1,6 +1,7 @@
 """A fleet is its robots, bit for bit."""
 
 from collections.abc import Callable
+from ctypes import POINTER, c_double
 from typing import Any
 
 import numpy as np
@@ -82,6 +83,60 @@ def test_the_size_is_set_in_configuration_mode_only(make_face: Callable[..., Any
     with pytest.raises(FMICallException):
         face.fmu.getFloat64([REFERENCE["x"]], 2)
     assert "2 values given for variables that hold 3" in face.messages[-1][2]
+
+
+def test_reset_gives_the_size_its_default_back(make_face: Callable[..., Any]) -> None:
+    face = make_face("Fleet3", "CoSimulation")
+    face.fmu.enterConfigurationMode()
+    face.set(robots=3)
+    face.fmu.exitConfigurationMode()
+    face.fmu.reset()
+    assert face.fmu.getUInt64([REFERENCE["robots"]]) == [1]
+    assert face.fmu.getInt32([REFERENCE["seed"]]) == [1]
+    face.start()
+    face.step(0.0)
+
+
+def test_in_model_exchange_robot_i_equals_a_single_robot(make_face: Callable[..., Any]) -> None:
+    """Three robots with sample times of their own, by Euler steps of 0.01 s."""
+    sample_times, outputs = [0.01, 0.02, 0.03], ("x", "theta", "x_meas", "v")
+    fleet = make_face("Fleet3", "ModelExchange")
+    fleet.fmu.enterConfigurationMode()
+    fleet.set(robots=3)
+    fleet.fmu.exitConfigurationMode()
+    fleet.fmu.setFloat64([REFERENCE["sample_time"]], sample_times)
+    together = integrate(fleet, 3, outputs)
+    for i, sample_time in enumerate(sample_times):
+        robot = make_face("Robot3", "ModelExchange")
+        robot.set(sample_time=sample_time, seed=i + 1)
+        assert (together[:, :, i] == integrate(robot, 1, outputs)[:, :, 0]).all()
+
+
+def integrate(face: Any, robots: int, outputs: tuple[str, ...]) -> np.ndarray:
+    """Twenty Euler steps; (steps, outputs, robots)."""
+    fmu, readings = face.fmu, []
+    states, slopes = np.zeros(3 * robots), np.zeros(3 * robots)
+    face.start()
+    fmu.setFloat64([REFERENCE["omega_right"]], [4.0] * robots)
+    *_, next_event = fmu.updateDiscreteStates()
+    fmu.enterContinuousTimeMode()
+    for step in range(1, 21):
+        fmu.getContinuousStates(pointer(states), len(states))
+        fmu.getContinuousStateDerivatives(pointer(slopes), len(slopes))
+        states += 0.01 * slopes
+        fmu.setTime(step * 0.01)
+        fmu.setContinuousStates(pointer(states), len(states))
+        if next_event < step * 0.01 + 1e-9:
+            fmu.enterEventMode()
+            *_, next_event = fmu.updateDiscreteStates()
+            fmu.enterContinuousTimeMode()
+        references = [REFERENCE[name] for name in outputs]
+        readings.append(fmu.getFloat64(references, len(outputs) * robots))
+    return np.array(readings).reshape(20, len(outputs), robots)
+
+
+def pointer(array: np.ndarray) -> Any:
+    return array.ctypes.data_as(POINTER(c_double))
 
 
 def test_derivatives_and_states_of_a_fleet(make_face: Callable[..., Any]) -> None:

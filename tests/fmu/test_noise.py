@@ -2,7 +2,9 @@
 
 import ctypes
 import subprocess
+from collections.abc import Callable
 from statistics import NormalDist
+from typing import Any
 
 import numpy as np
 import pytest
@@ -108,6 +110,24 @@ def test_without_noise_every_variance_acts_as_zero() -> None:
     readings = record(RobotParameters(noise=False), samples=50)
     assert (readings[:, 0:3] == readings[:, 3:6]).all()
     assert readings[-1, 6] == 0.05
+
+
+@pytest.mark.parametrize("name", ["Robot2", "Robot3"])
+def test_the_gains_are_tuned_on_the_way(make_face: Callable[..., Any], name: str) -> None:
+    """From the next sample on; the draws stay those of the seed and the sample."""
+    outputs = ("v", "omega", "x", "x_meas")
+    tuned, plain = (make_face(name, "CoSimulation") for _ in range(2))
+    for face in (tuned, plain):
+        face.start(seed=4)
+        face.set(wheel_noise_gain=1.0)
+        face.step(0.0)
+    tuned.set(wheel_noise_gain=3.0, measurement_noise_gain=0.0)
+    assert tuned.get(*outputs) == plain.get(*outputs)
+    for face in (tuned, plain):
+        face.step(0.01)
+    v, omega, x, x_meas = tuned.get(*outputs)
+    assert x_meas == x == plain.get("x")[0] != plain.get("x_meas")[0]
+    assert [v, omega] == pytest.approx([3 * value for value in plain.get("v", "omega")], rel=1e-12)
 
 
 def test_one_noise_does_not_disturb_the_other() -> None:

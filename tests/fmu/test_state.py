@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 OUTPUTS = ("x", "y", "theta", "x_meas", "y_meas", "theta_meas", "v", "omega")
 CHECKSUM = 8
-HEAD = 48
+HEAD = 56
 
 
 def drive(face: Any, first: int, ticks: int) -> list[list[float]]:
@@ -97,7 +97,7 @@ def test_damaged_states_are_refused_or_harmless(
     make_face: Callable[..., Any], data: st.DataObject
 ) -> None:
     """Bytes changed, cut or added; with the checksum left wrong, or made to fit again."""
-    from laglab_fmu.description import TOKEN
+    from laglab_fmu.description import token
 
     face = make_face("Robot3", "CoSimulation")
     face.start(seed=2)
@@ -112,7 +112,7 @@ def test_damaged_states_are_refused_or_harmless(
     damaged = damaged[: data.draw(st.integers(0, len(sound)))] + data.draw(st.binary(max_size=9))
     fits = data.draw(st.booleans())
     if fits and len(damaged) > CHECKSUM:
-        struct.pack_into("<Q", damaged, 0, checksum(bytes(damaged), TOKEN))
+        struct.pack_into("<Q", damaged, 0, checksum(bytes(damaged), token("Robot3")))
     try:
         received = face.deserialize(bytes(damaged))
     except FMICallException:
@@ -131,10 +131,10 @@ def test_damaged_states_are_refused_or_harmless(
         (HEAD + 2 * 8, struct.pack("<d", 0.0), "sample_time"),
         (HEAD + 1 * 8, struct.pack("<d", float("nan")), "track"),
         (HEAD + 3 * 8, struct.pack("<d", -1.0), "wheel_noise_variance"),
-        (HEAD + 30 * 8, struct.pack("<d", -1.0), "elapsed"),
-        (HEAD + 30 * 8, struct.pack("<d", 1e300), "elapsed"),
-        (HEAD + 31 * 8, struct.pack("<q", -1), "sample"),
-        (HEAD + 31 * 8, struct.pack("<q", 2**62), "sample"),
+        (HEAD + 32 * 8, struct.pack("<d", -1.0), "elapsed"),
+        (HEAD + 32 * 8, struct.pack("<d", 1e300), "elapsed"),
+        (HEAD + 33 * 8, struct.pack("<q", -1), "sample"),
+        (HEAD + 33 * 8, struct.pack("<q", 2**62), "sample"),
         (16, struct.pack("<Q", 7), "kind"),
         (24, struct.pack("<Q", 3), "mode"),
     ],
@@ -142,7 +142,7 @@ def test_damaged_states_are_refused_or_harmless(
 def test_impossible_values_are_named(
     make_face: Callable[..., Any], offset: int, value: bytes, what: str
 ) -> None:
-    from laglab_fmu.description import TOKEN
+    from laglab_fmu.description import token
 
     face = make_face("Robot2", "CoSimulation")
     face.start()
@@ -150,7 +150,7 @@ def test_impossible_values_are_named(
     data = bytearray(face.serialize(state))
     face.free(state)
     data[offset : offset + 8] = value
-    struct.pack_into("<Q", data, 0, checksum(bytes(data), TOKEN))
+    struct.pack_into("<Q", data, 0, checksum(bytes(data), token("Robot3")))
     with pytest.raises(FMICallException):
         face.deserialize(bytes(data))
     assert what in face.messages[-1][2]

@@ -19,6 +19,7 @@ EXPORT Robot *plain_start(size_t count) {
         robot->measurement_variance_x = VARIABLE[VR_MEASUREMENT_VARIANCE_X].start;
         robot->measurement_variance_y = VARIABLE[VR_MEASUREMENT_VARIANCE_Y].start;
         robot->measurement_variance_theta = VARIABLE[VR_MEASUREMENT_VARIANCE_THETA].start;
+        robot->wheel_noise_gain = robot->measurement_noise_gain = 1.0;
         robot->noise = 1;
         robot->integration = INTEGRATION_EULER;
         robot->seed = (int64_t)i + 1;
