@@ -23,6 +23,10 @@ SPREAD = 25
 """Innovations whose NIS are summed: sees a robot that is elsewhere at once."""
 DRIFTS = (12, 40, 200)
 """Innovations whose mean is taken: sees an estimate that lags behind by less than the noise."""
+SUSPECT = chi_square_bound(1e-3, DEGREES)
+"""N b^T S^-1 b above this is improbable: b is claimed as an error."""
+LAGGING = chi_square_bound(3e-6, DEGREES)
+"""N b^T S^-1 b above this is not noise: looked at less often, it may be a little more probable."""
 FEWEST_OF_SPREAD = 3
 EVERY = 3
 """The drift is looked for at each third innovation: it does not come suddenly."""
@@ -59,6 +63,17 @@ def weighed(evidence: Evidence, innovation: Sequence[float], nis: float) -> Evid
     return append(evidence, sums, DRIFTS[-1] + 1)
 
 
+class Lag(NamedTuple):
+    """The estimate lies beside what the last measurements say."""
+
+    innovations: int
+    """So many."""
+    mean: tuple[float, float, float]
+    """b [m, m, rad], of them."""
+    statistic: float
+    """N b^T S^-1 b, with the S of the newest: chi-square with 3 degrees if it is noise."""
+
+
 class Contradiction(NamedTuple):
     """What cannot be noise."""
 
@@ -68,12 +83,41 @@ class Contradiction(NamedTuple):
     """Whether the estimate lags behind, as with a wrong model; else it is somewhere else."""
 
 
-def contradiction(evidence: Evidence, weights: Triangle) -> Contradiction | None:
-    """None when all can be noise. `weights`: S^-1 of the newest innovation."""
+def contradiction(evidence: Evidence, lag: Lag | None) -> Contradiction | None:
+    """None when all can be noise."""
     if cause := _spread(evidence):
         return Contradiction(cause, drift=False)
-    cause = _drift(evidence, weights)
-    return Contradiction(cause, drift=True) if cause else None
+    if lag is None or lag.statistic <= LAGGING:
+        return None
+    x, y, theta = lag.mean
+    cause = (
+        f"the last {lag.innovations} measurements lie on one side of the estimate: on average by "
+        f"{x:.3f} m, {y:.3f} m, {theta:.3f} rad"
+    )
+    return Contradiction(cause, drift=True)
+
+
+def lagging(evidence: Evidence, weights: Triangle, before: Lag | None) -> Lag | None:
+    """The most telling of the windows' means, if it is improbable; most times what it was `before`.
+
+    `weights`: S^-1 of the newest innovation.
+    """
+    items, length = evidence
+    if length % EVERY:
+        return before
+    worst = None
+    for count in _counts(length - 1):
+        mean = _mean(items[length - 1 - count], items[length - 1], count)
+        statistic = count * weighted(mean, weights)
+        if statistic > (worst.statistic if worst else SUSPECT):
+            worst = Lag(count, mean, statistic)
+    return worst
+
+
+def _counts(there: int) -> list[int]:
+    """The windows for so many innovations: those that are full, and one that is not yet."""
+    full = [count for count in DRIFTS if count <= there]
+    return [*full, there] if full and there < DRIFTS[-1] and there not in full else full
 
 
 def _spread(evidence: Evidence) -> str | None:
@@ -89,27 +133,6 @@ def _spread(evidence: Evidence) -> str | None:
         f"the last {count} measurements are not where the estimate has the robot: their normalised "
         f"innovations squared add up to {total:.0f}, noise stays below {bound:.0f}"
     )
-
-
-def _drift(evidence: Evidence, weights: Triangle) -> str | None:
-    """N b^T S^-1 b of the mean b of N innovations, with the S of the newest, is chi-square too."""
-    items, length = evidence
-    if length % EVERY:
-        return None
-    for most in DRIFTS:
-        count = min(length - 1, most)
-        if count < DRIFTS[0]:
-            return None
-        mean = _mean(items[length - 1 - count], items[length - 1], count)
-        if count * weighted(mean, weights) > WILD:
-            x, y, theta = mean
-            return (
-                f"the last {count} measurements lie on one side of the estimate: on average by "
-                f"{x:.3f} m, {y:.3f} m, {theta:.3f} rad"
-            )
-        if count < most:
-            return None
-    return None
 
 
 def _mean(oldest: Sums, newest: Sums, count: int) -> tuple[float, float, float]:

@@ -25,7 +25,9 @@ from laglab_control.guard.evidence import (
     WILD,
     Contradiction,
     Evidence,
+    Lag,
     contradiction,
+    lagging,
     no_evidence,
     weighed,
 )
@@ -62,6 +64,8 @@ class Watched(NamedTuple):
     found: int
     """Measurements used since then."""
     evidence: Evidence
+    lag: Lag | None
+    """What the innovations suggest that the estimate is off by."""
     inputs: Log[Vector]
     """As believed or known, up to the one that led to the present."""
     seen: Seen
@@ -87,8 +91,13 @@ class Watched(NamedTuple):
 
     @property
     def P(self) -> Matrix | None:
-        """Its covariance (d, d)."""
-        return self.state.P
+        """Its covariance (d, d), and b b^T where the innovations suggest an error b of the pose."""
+        P, lag = self.state.P, self.lag
+        if P is None or lag is None:
+            return P
+        P = P.copy()
+        P[:3, :3] += np.outer(lag.mean, lag.mean)
+        return P
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,14 +124,16 @@ class Guard(Estimator[Watched]):
     def start(self, x: Vector, P: Matrix) -> Watched:
         """The estimator's own."""
         inner = self.estimator.start(x, P)
-        return Watched(inner, 0, False, None, 0, no_evidence(), logged(), Seen(), 0, None)
+        return Watched(inner, 0, False, None, 0, no_evidence(), None, logged(), Seen(), 0, None)
 
     def predict(self, state: Watched, u: Vector) -> Watched:
         """The estimator's own."""
-        inner, origin, learning, aside, found, evidence, inputs, seen, gated, _ = state
+        inner, origin, learning, aside, found, evidence, lag, inputs, seen, gated, _ = state
         inner = self._active(state).predict(inner, u)
         inputs = append(inputs, u, MEMORY)
-        return Watched(inner, origin, learning, aside, found, evidence, inputs, seen, gated, None)
+        return Watched(
+            inner, origin, learning, aside, found, evidence, lag, inputs, seen, gated, None
+        )
 
     def correct(
         self,
@@ -209,14 +220,16 @@ class Guard(Estimator[Watched]):
     ) -> Watched:
         v, weights, evidence = innovation.value.tolist(), precision(innovation.S), state.evidence
         nis = weighted(v, weights)
-        found, seen = None, state.seen.and_of(measured.tick)
+        found, lag, seen = None, state.lag, state.seen.and_of(measured.tick)
         if seen.newest == measured.tick:  # what is late was weighed by those after it
             evidence = weighed(evidence, v, nis)
-            found = contradiction(evidence, weights)
+            lag = lagging(evidence, weights, lag)
+            found = contradiction(evidence, lag)
         if nis <= WILD:
-            state = state._replace(state=tried, seen=seen, evidence=evidence)
+            state = state._replace(state=tried, seen=seen, evidence=evidence, lag=lag)
             return self._begun_again(state, measured, found) if found else self._used(state)
-        state = state._replace(seen=seen, evidence=evidence, gated=state.gated + 1)
+        gated = state.gated + 1
+        state = state._replace(seen=seen, evidence=evidence, lag=lag, gated=gated)
         return self._begun_again(state, measured, found) if found else state
 
     def _used(self, state: Watched) -> Watched:
@@ -233,7 +246,7 @@ class Guard(Estimator[Watched]):
         if before is not None and math.isfinite(before[2]):
             x[2] += 2 * math.pi * round(float(before[2] - x[2]) / (2 * math.pi))
         state, begun = self._replacement(state, x, found.drift)
-        state = self._from(state._replace(evidence=no_evidence()), measured.tick, begun)
+        state = self._from(state._replace(evidence=no_evidence(), lag=None), measured.tick, begun)
         return state._replace(alarm=Alarm(state.tick, found.cause))
 
     def _replacement(self, state: Watched, x: Vector, drift: bool) -> tuple[Watched, State]:
