@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 import laglab
 from laglab_control import Applied, Control, Controller, Echo, Measured, StationConfig
 
-SEEDS = (1, 2, 3, 4)
+SEEDS = (1, 2)
 TICKS = 200
 OLDEST = 60
 """Ticks; every measurement that comes is younger."""

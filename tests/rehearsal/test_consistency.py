@@ -49,7 +49,7 @@ def test_a_diverged_seed_and_a_lost_covariance_are_counted():
 def test_delayed_ekf_is_consistent_and_popf_and_ekf_are_too_sure():
     scenario = load("lab", {"duration": 2.0})
     names = ("ekf", "popf", "delayed-ekf")
-    got = list(samples(scenario, names, seeds=40, workers=2))
+    got = list(samples(scenario, names, seeds=24, workers=2))
     verdicts = {name: verdict(name, [one[name] for one in got], 20) for name in names}
     delayed = verdicts["delayed-ekf"]
     assert delayed.consistent

@@ -1,14 +1,11 @@
 """The practical default comes to rest at the goal, wherever it starts and whatever the noise."""
 
-from concurrent.futures import ProcessPoolExecutor
-from multiprocessing import get_context
-
 import numpy as np
 import pytest
 
 import laglab
 
-SEEDS = 100
+SEEDS = 40
 
 
 def ends_at_goal(seed):
@@ -22,6 +19,5 @@ def ends_at_goal(seed):
 
 @pytest.mark.slow
 @pytest.mark.timeout(240)
-def test_99_of_100_random_starts_end_at_the_goal():
-    with ProcessPoolExecutor(2, get_context("spawn")) as pool:
-        assert sum(pool.map(ends_at_goal, range(SEEDS))) >= 0.99 * SEEDS
+def test_it_ends_at_the_goal_wherever_it_starts():
+    assert all(map(ends_at_goal, range(SEEDS)))

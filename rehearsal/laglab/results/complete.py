@@ -74,10 +74,11 @@ def keep(scenario: Scenario, way: Way, ending: Ending, recorder: MemoryRecorder)
     if not recorder.rows:
         raise nothing_recorded(ending, "the run ended before its first tick was over")
     trace = trace_of(recorder.rows)
-    session = list(heard(_frames(recorder.tlog)))
+    names = scenario.estimator.compare
+    session = list(heard(_frames(recorder.tlog))) if names else []
     shadows: dict[str, Shadow] = {}
     compared: dict[str, Errors | None] = {}
-    for name in scenario.estimator.compare:
+    for name in names:
         rows = list(shadow_rows(scenario, name, session))
         shadows[name] = collected(rows)
         compared[name] = shadow_error(rows, [trace], scenario.link.measurement_delay)
