@@ -5,7 +5,7 @@ import pytest
 
 import laglab
 
-SEEDS = 40
+SEEDS = 24
 
 
 def ends_at_goal(seed):

@@ -26,6 +26,8 @@ COMMANDS = {
     "conform": ("conform", "udpin://127.0.0.1:0", "--side", "robot"),
     "cable": ("serial", "port-1", "port-2"),
 }
+NEEDED = ("msgspec", "numpy", "pydantic_core")
+"""Not those that others have Python load at its start, whatever program it runs."""
 OBEYED_WITHIN = 5.0
 
 
@@ -48,8 +50,9 @@ class Started:
         )
 
     def wait_until_it_loads(self) -> None:
-        """Modules of others: whatever comes before is Python's own start."""
-        while "site-packages" not in Path(f"/proc/{self.process.pid}/maps").read_text():
+        """Modules that we need: whatever comes before is Python's own start."""
+        maps = Path(f"/proc/{self.process.pid}/maps")
+        while not any(f"/{module}/" in maps.read_text() for module in NEEDED):
             time.sleep(0.002)
 
     def all_processes(self) -> list[int]:
