@@ -97,9 +97,10 @@ def draw_trust(of: Scores, stations: Sequence[str]) -> Figure:
     )
     figure = empty_figure(3 + 1.4 * len(stations), 1.5 + 0.4 * len(conditions))
     axes = figure.subplots()
-    axes.imshow(shares, cmap="RdYlGn", vmin=0, vmax=1, aspect="auto")
+    axes.imshow(shares, cmap="cividis", vmin=0, vmax=1, aspect="auto")
     for (row, column), share in np.ndenumerate(shares):
-        axes.text(column, row, f"{share:.0%}", ha="center", va="center")
+        ink = "black" if share > 0.5 else "white"
+        axes.text(column, row, f"{share:.0%}", ha="center", va="center", color=ink)
     axes.set_xticks(range(len(stations)), [name.replace(", ", ",\n") for name in stations])
     axes.set_yticks(range(len(conditions)), conditions)
     axes.xaxis.tick_top()
