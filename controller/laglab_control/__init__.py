@@ -4,6 +4,7 @@ A number in brackets, such as (28), is an equation of docs/theory.md, in this an
 """
 
 from laglab_control.angle import wrap
+from laglab_control.chi_square import chi_square_bound
 from laglab_control.controller import (
     FAR,
     INITIAL_VARIANCE,
@@ -34,6 +35,7 @@ from laglab_control.estimators import (
     Taken,
     WheelScales,
 )
+from laglab_control.estimators.kalman import normalised_squared
 from laglab_control.flight import Echo
 from laglab_control.guard import Alarm, Guard
 from laglab_control.laws import Demand, Law
@@ -79,8 +81,10 @@ __all__ = [
     "StationConfig",
     "Taken",
     "WheelScales",
+    "chi_square_bound",
     "constant_delay",
     "is_far",
+    "normalised_squared",
     "replay",
     "wrap",
 ]

@@ -31,9 +31,6 @@ IN_FORCE = 1.0
 
 ROBOT = ROBOT_SYSTEM, ROBOT_COMPONENT
 
-PATIENT_WITH_KEYS = 1.0
-"""[s] So often we say which frames we may not take."""
-
 
 class Onlooker:
     """Told of all that happens at the station; this one looks away."""
@@ -92,8 +89,7 @@ class _Loop:
         self._heard = monotonic()
         self._called = -HEARTBEAT_PERIOD
         self._compared = False
-        self._refusals = Refusals()
-        self._tell_at = self._heard + PATIENT_WITH_KEYS
+        self._refusals = Refusals(self._heard)
 
     def say(self, frames: list[bytes]) -> None:
         self._link.send(b"".join(frames))
@@ -192,9 +188,6 @@ class _Loop:
 
     def _tell_of_keys(self) -> None:
         """Now and then: whose frames we may not take, and how to mend that."""
-        if (now := monotonic()) < self._tell_at:
-            return
-        self._tell_at = now + PATIENT_WITH_KEYS
-        for text in self._refusals.news([self._listener]):
+        for text in self._refusals.news([self._listener], monotonic()):
             self._station.warn(text, text)
             self._look_around()

@@ -21,11 +21,11 @@ class Warnings:
 
     def hear(self, told: Statustext) -> None:
         """What the robot itself says, if it is worse than a warning."""
+        self.emergency_stop |= told.severity == MAV_SEVERITY_EMERGENCY
         text = told.text.decode(errors="replace")
         if told.severity > MAV_SEVERITY_ERROR or text in self._texts or self._told >= MOST_TOLD:
             return
         self._told += 1
-        self.emergency_stop |= told.severity == MAV_SEVERITY_EMERGENCY
         self.add(text, f"the robot says: {text}")
 
     @property

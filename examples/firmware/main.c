@@ -47,6 +47,18 @@ static bool send(const Robot *robot, const uint8_t *data, size_t size) {
     return write(robot->port, data, size) >= 0 || errno == EAGAIN;
 }
 
+/* What is being told is told to its end, and what lies between it and what is asked now. */
+static void owe(Robot *robot, uint32_t first, uint32_t count) {
+    uint32_t end = first + count;
+    if (robot->owed > 0) {
+        const uint32_t end_of_owed = robot->asked + robot->owed;
+        first = first < robot->asked ? first : robot->asked;
+        end = end > end_of_owed ? end : end_of_owed;
+    }
+    robot->asked = first;
+    robot->owed = (uint16_t)(end - first < MEMORY_TICKS ? end - first : MEMORY_TICKS);
+}
+
 static bool obey(Robot *robot, LinkEvent event) {
     uint8_t buffer[LINK_LARGEST];
     switch (event.kind) {
@@ -63,8 +75,7 @@ static bool obey(Robot *robot, LinkEvent event) {
         }
         return true;
     case LINK_RECALL:
-        robot->asked = event.first;
-        robot->owed = event.count;
+        owe(robot, event.first, event.count < MEMORY_TICKS ? event.count : MEMORY_TICKS);
         return true;
     case LINK_COMMAND:
         if (robot->running) {

@@ -1,5 +1,6 @@
 """Building the FMUs from C sources and the table of variables."""
 
+import os
 import tempfile
 import zipfile
 from collections.abc import Mapping, Sequence
@@ -70,7 +71,7 @@ def _for_macos(binaries: Mapping[Platform, bytes]) -> dict[Platform, bytes]:
 def _write_zip(path: Path, files: Mapping[str, bytes]) -> Path:
     """Same files, same bytes: fixed dates, order, permissions and compression. Whole or not at all:
     what is there already may be in use."""
-    new = path.with_suffix(".new")
+    new = path.with_name(f"{path.stem}-{os.getpid()}.new")  # somebody else may build here too
     try:
         with zipfile.ZipFile(new, "w") as archive:
             for name in sorted(files):

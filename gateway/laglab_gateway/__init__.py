@@ -10,12 +10,13 @@ from laglab_gateway.errors import (
     StationSilentError,
     TimelineError,
     TraceError,
+    UnplaceableError,
 )
 from laglab_gateway.link.channel import Channel
 from laglab_gateway.link.fates import Fates, RandomFates
 from laglab_gateway.link.impairments import IDEAL, Burst, ExtraDelay, Impairments
 from laglab_gateway.link.log import LinkRow, RecordedFates, read_link_log
-from laglab_gateway.link.timeline import Direction, Event
+from laglab_gateway.link.timeline import Direction, Event, first_tick
 from laglab_gateway.loops.lockstep import serve_lockstep
 from laglab_gateway.loops.realtime import serve_realtime
 from laglab_gateway.loops.remote import serve_remote
@@ -101,8 +102,10 @@ __all__ = [
     "Trace",
     "TraceError",
     "TraceRow",
+    "UnplaceableError",
     "Watch",
     "Watcher",
+    "first_tick",
     "format_row",
     "read_link_log",
     "read_trace",

@@ -37,3 +37,7 @@ class TraceError(GatewayError):
 
 class TimelineError(GatewayError):
     """A timeline or link log cannot be read or believed."""
+
+
+class UnplaceableError(GatewayError):
+    """A robot that nobody can put elsewhere from here."""

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from msgspec.structs import replace
 
 from laglab_gateway.config import GatewayConfig
-from laglab_gateway.drive import WHY_STOPPING, Drive, Rejection
+from laglab_gateway.drive import WHY_STOPPING, Drive, Rejection, Safety
 from laglab_gateway.link.fates import Fates
 from laglab_gateway.link.timeline import Direction
 from laglab_gateway.outcome import Outcome, reason_of
@@ -43,6 +43,8 @@ from laglab_protocol import (
 )
 
 UNKNOWN = (None, None, None)
+MOST_ASKED = 8
+"""Questions that wait for a command to go with; the station asks again."""
 
 
 class RobotTick(NamedTuple):
@@ -73,7 +75,9 @@ class Relay(RobotSide):
         self.robot_settings: Settings | None = None
         self._to_robot = to_robot or Sender(STATION_SYSTEM, STATION_COMPONENT)
         self._restart = Restart()
-        self._samples: deque[Measurement] = deque(maxlen=UNANNOUNCED)
+        self._coming: deque[Measurement | Applied] = deque(maxlen=UNANNOUNCED)
+        self._asks: deque[Recall] = deque(maxlen=MOST_ASKED)
+        """For the robot, with its next command."""
         self._heard = RobotTick(-1, [])
         self._last: Measurement | None = None
         self._in_force = -1
@@ -101,15 +105,17 @@ class Relay(RobotSide):
         """
         match frame.message:
             case Measurement():
-                self._samples.append(frame.message)
+                self._coming.append(frame.message)
+            case Applied():
+                self._coming.append(frame.message)
+                self._memory.learn(frame.message)
             case Tick(tick, announced):
-                samples = list(self._samples)
-                self._samples.clear()
-                if len(samples) == announced and self._is_next(tick):
+                came = list(self._coming)
+                self._coming.clear()
+                if len(came) == announced and self._is_next(tick):
+                    samples = [each for each in came if isinstance(each, Measurement)]
                     self._heard = RobotTick(tick, samples)
                     return True
-            case Applied():
-                self._memory.learn(frame.message)
             case Settings():
                 self.robot_settings = frame.message
             case End():
@@ -144,6 +150,7 @@ class Relay(RobotSide):
         self._answered_through = tick - 1
         self._commands.clear()
         self._measurements.clear()
+        self._asks.clear()
         self._memory.forget()
         self._owed.forget()
         self._drive = Drive()
@@ -157,32 +164,38 @@ class Relay(RobotSide):
 
     def forward(self) -> list[bytes]:
         """The frames for the robot: the commands that are to come into force at its next tick."""
+        safety = self.safety
         frames: list[bytes] = []
         for message, _ in self._commands.due(self.elapsed + 1):
             if isinstance(message, Recall):
-                frames += self._remember(message)
-            elif self._follow(message, self.tick + 1, self.safety):
-                frames.append(self._to_robot.frame(self._allowed(message)))
-        self._say_why_stopping()
+                self._remember(message)
+            elif self._follow(message, self.tick + 1, safety):
+                frames += map(self._to_robot.frame, [*self._asks, self._allowed(message)])
+                self._asks.clear()
+        self._say_why_stopping(safety)
         return frames
 
-    def _say_why_stopping(self) -> None:
-        """Once: the robot itself only knows that nothing comes."""
-        if self._rejected is not self._told_rejected:
-            self._told_rejected = self._rejected
-            if self._rejected is not None:
-                self.announce(WHY_STOPPING[self._rejected], MAV_SEVERITY_ERROR)
+    def _say_why_stopping(self, safety: Safety) -> None:
+        """Once, when it stops: the robot itself only knows that nothing comes."""
+        silent = self.tick + 1 - max(self._drive.fresh, self.first)
+        stopping = silent * self._config.sample_time >= safety.link_timeout
+        rejected = self._rejected if stopping else None
+        if rejected is not None and rejected is not self._told_rejected:
+            self.announce(WHY_STOPPING[rejected], MAV_SEVERITY_ERROR)
+        self._told_rejected = rejected
 
-    def _remember(self, asked: Recall) -> list[bytes]:
+    def _remember(self, asked: Recall) -> None:
         """Tell what the robot's measurements have told; the robot is asked for what they have not,
         and the station will ask again."""
         self._owed.owe(self._memory.answers(asked))
-        return [self._to_robot.frame(asked)] if self._memory.lacks(asked) else []
+        if self._memory.lacks(asked):
+            self._asks.append(asked)
 
     def _allowed(self, command: Command) -> Command:
-        """For the robot, with its stamp, and without the estimate that went before it."""
+        """For the robot, with its stamp, and with what it is asked instead of the estimate."""
         v, omega = self._armed(command.v, command.omega)
-        return Command(v, omega, command.tick, ROBOT_SYSTEM, ROBOT_COMPONENT, estimates=0)
+        asked = len(self._asks)
+        return Command(v, omega, command.tick, ROBOT_SYSTEM, ROBOT_COMPONENT, estimates=asked)
 
     def close_tick(self) -> TraceRow:
         """What happened at this tick; the next one, just heard, says what was in force."""

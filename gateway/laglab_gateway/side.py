@@ -188,12 +188,14 @@ class RobotSide(ABC):
             return  # a frame of this answer was lost: the repeat will bring it whole
         self._command = command
         self._push(command)
-        for recall in self._recalls:
-            self._commands.push(self.elapsed, recall)
 
     def _push(self, command: Command) -> None:
+        """Put it on the link, with what was asked in the same breath, however late it comes."""
         self._answered_through = command.tick
         self._commands.push(self.elapsed, command)
+        for recall in self._recalls:
+            self._commands.push(self.elapsed, recall)
+        self._recalls.clear()
 
     def _follow(self, command: Command, tick: int, safety: Safety) -> bool:
         """Follow from `tick` on a command that came across; False, and counted, when rejected."""

@@ -71,7 +71,7 @@ from laglab_protocol.messages.standard import (
     SystemTime,
     Timesync,
 )
-from laglab_protocol.ration import Ration
+from laglab_protocol.ration import LEAST_BYTES, Ration
 from laglab_protocol.refusals import Refusals
 from laglab_protocol.restart import Restart
 from laglab_protocol.settings import differences, refuse_other_sample_time
@@ -82,6 +82,7 @@ from laglab_protocol.tlog import TlogError, read_tlog, tlog_record
 
 __all__ = [
     "EVERY_MESSAGE",
+    "LEAST_BYTES",
     "MAV_SEVERITY_EMERGENCY",
     "MAV_SEVERITY_ERROR",
     "MAV_SEVERITY_WARNING",

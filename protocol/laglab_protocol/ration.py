@@ -1,5 +1,8 @@
 """How much of what strangers ask for is done: so much a second, so much at once."""
 
+LEAST_BYTES = 64
+"""For rations of bytes: a piece costs as much as that, however short it is."""
+
 
 class Ration:
     """Fills up with time, and holds no more than `at_once`. No clock of its own.
@@ -8,9 +11,11 @@ class Ration:
     is left until that is made up for.
     """
 
-    def __init__(self, per_second: float, at_once: float) -> None:
+    def __init__(self, per_second: float, at_once: float, least: float = 0.0) -> None:
+        """`least`: whatever is done costs as much as that."""
         self._per_second = per_second
         self._at_once = at_once
+        self._least = least
         self.rest = at_once
         """What was left when it was last looked at, less what was taken since."""
         self._filled = float("-inf")
@@ -24,4 +29,4 @@ class Ration:
 
     def take(self, amount: float) -> None:
         """So much has been done."""
-        self.rest -= amount
+        self.rest -= max(amount, self._least)

@@ -5,6 +5,8 @@ from collections.abc import Iterable, Iterator
 from laglab_protocol.framing.frame import Refusal
 from laglab_protocol.listener import Listener
 
+PERIOD = 1.0
+"""[s] So often we look."""
 ENOUGH = 5
 """So many frames: a single one may have been overtaken on its way."""
 
@@ -23,11 +25,16 @@ MENDED = {
 class Refusals:
     """Says of each link and reason, once, that frames are refused, and how to mend it."""
 
-    def __init__(self) -> None:
+    def __init__(self, now: float) -> None:
+        """At `now` [s] there is nothing to be told yet."""
         self._told: set[tuple[str, Refusal]] = set()
+        self._next = now + PERIOD
 
-    def news(self, listeners: Iterable[Listener]) -> Iterator[str]:
-        """What is to be told since the last time, in a line each."""
+    def news(self, listeners: Iterable[Listener], now: float) -> Iterator[str]:
+        """What is to be told since the last time, in a line each, if it is time to look."""
+        if now < self._next:
+            return
+        self._next = now + PERIOD
         for listener in listeners:
             for reason, count in listener.refused.items():
                 told = listener.link.name, reason

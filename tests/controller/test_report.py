@@ -7,8 +7,17 @@ import pytest
 
 from laglab_control import StationConfig
 from laglab_control.estimators.popf import delay_limit
-from laglab_protocol import Measurement, Sender, Tick, frames_in
+from laglab_protocol import (
+    MAV_SEVERITY_EMERGENCY,
+    MAV_SEVERITY_ERROR,
+    Measurement,
+    Sender,
+    Statustext,
+    Tick,
+    frames_in,
+)
 from laglab_station import Station
+from laglab_station.warned import MOST_TOLD, Warnings
 
 LATE = 20
 
@@ -53,3 +62,13 @@ def test_ticks_are_timed_by_the_clock_given():
     report = run("popf", 1e-4, clock=lambda: next(ticking))
     assert report.tick_p50_s == report.tick_p99_s == report.tick_longest_s == pytest.approx(1e-6)
     assert run("popf", 1e-4).tick_p50_s is None
+
+
+def test_an_emergency_stop_is_noticed_however_much_the_robot_has_said():
+    warnings = Warnings()
+    for number in range(2 * MOST_TOLD):
+        warnings.hear(Statustext(MAV_SEVERITY_ERROR, f"text {number}".encode()))
+    assert len(warnings.texts) == MOST_TOLD
+    assert not warnings.emergency_stop
+    warnings.hear(Statustext(MAV_SEVERITY_EMERGENCY, b"emergency stop"))
+    assert warnings.emergency_stop

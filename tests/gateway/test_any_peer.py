@@ -108,4 +108,4 @@ def test_what_no_tick_closes_does_not_pile_up(robot: Robot) -> None:
         for each in frames_in(frame):
             relay.hear_robot(each)
     assert len(gateway._estimates) < 300
-    assert len(relay._samples) < 300
+    assert len(relay._coming) < 300

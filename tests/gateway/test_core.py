@@ -16,12 +16,14 @@ from laglab_protocol import (
     ROBOT_SYSTEM,
     STATION_COMPONENT,
     STATION_SYSTEM,
+    Applied,
     Command,
     End,
     EndReason,
     Estimate,
     Measurement,
     Message,
+    Recall,
     Receiver,
     Sender,
     Tick,
@@ -123,6 +125,23 @@ def test_an_answer_that_lost_its_estimate_waits_for_the_repeat(robot: Robot) -> 
     assert gateway.answered
     gateway.settle()
     assert gateway.close_tick()[8:11] == (1.0, 2.0, 3.0)
+
+
+@pytest.mark.parametrize("late", [0, 1, 3])
+def test_a_question_is_answered_however_late_the_answer_it_came_with(
+    robot: Robot, late: int
+) -> None:
+    gateway, station = gateway_of(robot, 0, 0), Station()
+    told: list[Message] = []
+    for tick in range(8):
+        told += heard(gateway.open_tick())
+        if tick == 2 + late:
+            question = Recall(0, 2, ROBOT_SYSTEM, ROBOT_COMPONENT)
+            gateway.hear(frames_in(station.say(question, command(2, estimates=1))))
+        gateway.settle()
+        gateway.close_tick()
+    (answer,) = [each for each in told if isinstance(each, Applied)]
+    assert (answer.first, answer.count) == (0, 2)
 
 
 def test_the_last_tick_is_not_stepped(robot: Robot) -> None:

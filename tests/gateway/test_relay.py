@@ -24,6 +24,7 @@ from laglab_protocol import (
     ROBOT_SYSTEM,
     STATION_COMPONENT,
     STATION_SYSTEM,
+    Applied,
     Command,
     CommandAck,
     CommandLong,
@@ -32,6 +33,7 @@ from laglab_protocol import (
     Heartbeat,
     Measurement,
     Message,
+    Recall,
     Receiver,
     Sender,
     Settings,
@@ -59,11 +61,26 @@ class Robot:
     def tick(self) -> bytes:
         k = next(self.ticks)
         v, omega, stamp = self.in_force
+        told = self._told()
         for command in self.received:
-            self.in_force = (command.v, command.omega, command.tick)
+            if isinstance(command, Command):
+                self.in_force = (command.v, command.omega, command.tick)
         self.received.clear()
         sample = Measurement(float(k), -k / 2, k / 8, v, omega, k, stamp)
-        return b"".join(map(self.sender.frame, (sample, Tick(k, 1))))
+        return b"".join(map(self.sender.frame, (*told, sample, Tick(k, 1 + len(told)))))
+
+    def _told(self) -> list[Message]:
+        """What it was asked by its rules: before a command that says so."""
+        before: list[Recall] = []
+        told: list[Message] = []
+        for message in self.received:
+            if isinstance(message, Recall):
+                before.append(message)
+            elif isinstance(message, Command):
+                assert message.estimates == len(before)
+                told += [Applied((0.25,) * 12, (0.5,) * 12, each.first, 12) for each in before]
+                before.clear()
+        return told
 
 
 class Rig:
@@ -160,6 +177,42 @@ def test_a_tick_that_lost_a_frame_is_passed_over() -> None:
     rig.run(2)
     assert [row.tick for row in rig.rows] == [0, 1, 2, 4]
     assert rig.rows[2].v is None, "the sample that would tell was lost"
+
+
+def test_what_the_station_missed_is_asked_of_the_robot_and_told() -> None:
+    """Also what the relay itself has not heard: a robot that remembers tells it with its tick."""
+    rig = Rig(relay(1, 1))
+    rig.run(30)
+    for _ in range(4):
+        rig.robot.tick()  # these are lost before they reach us
+    for _ in range(3):
+        rig.run(5)
+        rig.feed(rig.robot.tick())
+        rig.say(Recall(28, 8, 1, 1), Command(0.0, 0.0, rig.relay.tick, 1, 1, 1))
+        rig.forward()
+    rig.run(4)
+    ticks = [told[-1].tick for told in rig.told if isinstance(told[-1], Tick)]
+    assert ticks == [*range(30), *range(34, 56)], "no tick that tells of it is passed over"
+    told = [each for batch in rig.told for each in batch if isinstance(each, Applied)]
+    assert told[-1].first == 28
+    assert told[-1].v[2:5] == (0.25, 0.25, 0.25), "by the robot's own word"
+
+
+def test_why_the_robot_stops_is_said_when_it_stops_and_once() -> None:
+    rig = Rig(relay(safety=Safety(v_limit=1.0)))
+    rig.run(10)
+    for bad in (True, False, True, False):
+        rig.feed(rig.robot.tick())
+        tick = rig.relay.tick
+        rig.say(Command(5.0 if bad else 0.1, 0.0, tick, 1, 1, 0))
+        rig.forward()
+    assert rig.relay.take_notices() == [], "one command that is refused stops nothing"
+    for _ in range(120):
+        rig.feed(rig.robot.tick())
+        rig.say(Command(5.0, 0.0, rig.relay.tick, 1, 1, 0))
+        rig.forward()
+    (notice,) = rig.relay.take_notices()
+    assert notice.text == b"commands are beyond V_MAX, OMEGA_MAX: stopping"
 
 
 def test_several_ticks_in_one_piece_are_ticks_one_by_one() -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from laglab_gateway import Safety, Services, Watch, Watcher, standard_parameters
 from laglab_gateway.loops.datagrams import LARGEST_DATAGRAM
-from laglab_gateway.services import RobotState
+from laglab_gateway.services import Askers, RobotState
 from laglab_protocol import (
     EVERY_MESSAGE,
     ROBOT_COMPONENT,
@@ -47,13 +47,13 @@ def stack() -> Iterator[ExitStack]:
 class Watched:
     """A robot's services, watched on one link."""
 
-    def __init__(self, endpoint: Endpoint, codec: Codec, **how: bool) -> None:
-        allow = EVERY_MESSAGE if how else frozenset[str]()
+    def __init__(self, endpoint: Endpoint, codec: Codec, unsigned: bool = False) -> None:
+        allow = EVERY_MESSAGE if unsigned else frozenset[str]()
         sender, receiver = codec.on_another_link(allow)
         self.endpoint = endpoint
         self.services = Services(standard_parameters(0, 0, Safety()))
         self.watch = Watch(
-            self.services, [Watcher(Listener(endpoint, receiver), sender, trusting=not how)]
+            self.services, [Watcher(Listener(endpoint, receiver), sender, trusting=not unsigned)]
         )
 
     def for_a_while(self, seconds: float) -> None:
@@ -197,3 +197,12 @@ def test_who_signs_nothing_beside_a_key_may_not_set_what_the_robot_does(
     watched.for_a_while(0.05)
     assert watched.services.parameters["V_MAX"] == 100.0
     assert watched.services.arming.take_reset() is not None
+
+
+def test_who_left_is_told_nothing_more() -> None:
+    askers = Askers(watching=True)
+    askers.heard_from(None, 0.0)
+    askers.heard_from("gone", 100.0)
+    askers.heard_from("there", 150.0)
+    askers.forget_silent(161.0)
+    assert [address for address, _ in askers.known()] == [None, "there"]

@@ -26,17 +26,18 @@ def in_2050() -> int:
 def test_each_reason_is_told_once(
     signer: Signer | None, verifier: Verifier | None, said: str
 ) -> None:
-    sender, refusals = Sender(1, 1, signer), Refusals()
+    sender, refusals = Sender(1, 1, signer), Refusals(now=0.0)
     with (
         open_endpoint("udpin://127.0.0.1:0") as ours,
         open_endpoint(ours.name.replace("udpin", "udpout")) as theirs,
     ):
         listener = Listener(ours, Receiver(verifier))
         for _ in range(ENOUGH):
-            assert list(refusals.news([listener])) == []
+            assert list(refusals.news([listener], now=5.0)) == []
             theirs.send(sender.frame(Tick(0, 0)))
             assert listener.listen(1.0) == []
-        (line,) = refusals.news([listener])
+        assert list(refusals.news([listener], now=5.5)) == [], "it is not time to look again"
+        (line,) = refusals.news([listener], now=7.0)
         assert line.startswith(ours.name)
         assert said in line
-        assert list(refusals.news([listener])) == []
+        assert list(refusals.news([listener], now=9.0)) == []

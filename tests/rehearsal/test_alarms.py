@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import laglab
+from laglab.command import main
 from laglab.results.numbers import deviation, loop_estimates
 from laglab_protocol import Statustext, read_tlog
 
@@ -48,7 +49,7 @@ def test_the_alarm_is_in_table_warning_verdict_summary_figure_and_log(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(SystemExit) as ended:
-        laglab_main(["run", "lab", *MOVED, "--transport", "inline", "--out", str(tmp_path / "r")])
+        main(["run", "lab", *MOVED, "--transport", "inline", "--out", str(tmp_path / "r")])
     assert ended.value.code == 0
     said = capsys.readouterr()
     summary = json.loads((tmp_path / "r" / "summary.json").read_text())
@@ -85,7 +86,7 @@ def test_somewhere_the_robot_must_be_put(
     event: str, problem: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(SystemExit) as ended:
-        laglab_main(["scenario", "lab", "--set", f"plant.event={event}"])
+        main(["scenario", "lab", "--set", f"plant.event={event}"])
     assert ended.value.code == 2
     assert problem in capsys.readouterr().err
 
@@ -114,7 +115,14 @@ def test_where_the_claim_is_large_the_robot_is_slow() -> None:
     assert careful.trace["omega_sent"][0] == pytest.approx(0.5 * careless.trace["omega_sent"][0])
 
 
-def laglab_main(arguments: list[str]) -> None:
-    from laglab.command import main
-
-    main(arguments)
+@pytest.mark.parametrize("command", ["run", "gateway"])
+def test_nobody_can_move_a_real_robot_from_here(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: Any
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    here = ["--endpoint", "udpin://127.0.0.1:0"] if command == "gateway" else []
+    with pytest.raises(SystemExit) as ended:
+        main([command, "lab", *MOVED, *here, "--plant", "udpout://127.0.0.1:9"])
+    assert ended.value.code == 2
+    (line,) = (each for each in capsys.readouterr().err.splitlines() if each.startswith("laglab:"))
+    assert "which nobody can move from here" in line

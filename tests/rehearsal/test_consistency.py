@@ -1,12 +1,15 @@
 """The claimed covariances against true errors."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 
+import laglab
 from laglab.scenario import load
-from laglab.studies.consistency import Sample, chi_square_bounds, samples, verdict
+from laglab.studies.consistency import Sample, chi_square_bounds, judged, samples, verdict
+from laglab.studies.overhearing import Overhearing
 
 
 @pytest.mark.parametrize(
@@ -54,6 +57,8 @@ def test_delayed_ekf_is_consistent_and_popf_and_ekf_are_too_sure():
     delayed = verdicts["delayed-ekf"]
     assert delayed.consistent
     assert delayed.nis.inside > 0.9
+    assert delayed.bounds[0] < delayed.nees_ahead.mean < delayed.bounds[1]
+    assert delayed.of_runs.mean() == pytest.approx(delayed.nees.mean)
     for name in ("popf", "ekf"):
         assert verdicts[name].nees.mean > delayed.bounds[1]
         assert np.all(verdicts[name].claimed[60] < verdicts[name].true[60])
@@ -71,3 +76,30 @@ def test_a_filter_that_claims_nothing_cannot_be_judged(laglab):
     ended = laglab("consistency", "lab", "--judge", "raw")
     assert (ended.returncode, ended.stdout) == (2, "")
     assert "--judge: 'raw' is not one of ekf, popf" in ended.stderr
+
+
+@pytest.mark.parametrize("scenario", ["lab", "lab-radio"])
+def test_a_filter_beside_the_loop_hears_and_does_what_the_one_in_it_does(scenario):
+    """So the loop's own filter, set beside itself, says the same at every tick."""
+    said = {}
+    overrides = {"duration": 4.5, "estimator.guard": False}
+    overhearing = partial(Overhearing, others=("delayed-ekf",), said=said)
+    laglab.run(scenario, overrides, controller=overhearing)
+    beside, own = said["delayed-ekf"][0::2], said["delayed-ekf"][1::2]
+    assert len(beside) == len(own) == 451
+    for one, other in zip(beside, own, strict=True):
+        for ours, theirs in zip(one, other, strict=True):
+            np.testing.assert_array_equal(ours, theirs)
+
+
+def test_the_prediction_is_judged_by_where_the_robot_was_when_it_counted():
+    """Without noise, and told where the robot is, it is there n ticks later, and not before."""
+    said = {}
+    overhearing = partial(Overhearing, said=said)
+    trace = laglab.run("fig6", {"estimator.kind": "delayed-ekf"}, controller=overhearing).trace
+    pose = np.stack([trace[axis] for axis in ("x", "y", "theta")], axis=1)
+    known = said["delayed-ekf"]
+    for k in (30, 80, 130):
+        assert np.abs(known[k].ahead - pose[k + 10]).max() < 1e-9
+        assert np.abs(known[k].ahead - pose[k]).max() > 1e-3
+    assert np.nanmax(judged(known, trace).nees_ahead) < 1e-6

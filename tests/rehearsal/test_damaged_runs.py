@@ -25,6 +25,12 @@ JUNK = {
     "nested": b'{"x": ' + b"[" * 100_000,
     "nested TOML": b"x = " + b"[" * 3000,
 }
+GOOD_AS_FAR_AS_IT_GOES = {
+    ("scenario.toml", "empty"),
+    ("trace.csv", "half"),
+    ("robot.tlog", "half"),
+}
+"""An empty scenario runs by default; a record that was cut off is that of a shorter run."""
 DAMAGES = [*JUNK, "a folder", "half", "huge numbers"]
 
 
@@ -70,7 +76,7 @@ def test_a_damaged_file_is_told_in_a_line(
         with pytest.raises(SystemExit) as ended:
             main([*arguments])
         errors = capsys.readouterr().err
-        assert ended.value.code in (0, 2), errors
+        assert ended.value.code == (0 if (name, how) in GOOD_AS_FAR_AS_IT_GOES else 2), errors
         if ended.value.code:
             assert len(errors.splitlines()) == 1, errors
             assert "run/" in errors

@@ -6,6 +6,9 @@ from pathlib import Path
 import pytest
 
 from laglab.command import main
+from laglab.errors import ResultsError
+from laglab.results.whole import whole_file
+from laglab.results.writable import file_place
 
 LONG_NAME = "x" * 300
 NO_FOLDERS = ["file", "file/below", "/proc/none", LONG_NAME]
@@ -148,3 +151,26 @@ def test_the_kind_of_a_picture_is_that_of_its_name(name: str, begins: bytes) -> 
         main(["compare", "run", "run", "--out", name])
     assert ended.value.code == 0
     assert Path(name).read_bytes().startswith(begins)
+
+
+@pytest.mark.parametrize("broken_by", [KeyboardInterrupt, OSError("no room")])
+def test_what_was_there_stays_until_the_new_is_whole(broken_by: BaseException) -> None:
+    def broken() -> None:
+        with whole_file(Path("old")) as file:
+            file.write(b"half of the n")
+            raise broken_by
+
+    Path("old").write_text("of before")
+    with pytest.raises((KeyboardInterrupt, ResultsError)):
+        broken()
+    assert Path("old").read_text() == "of before"
+    with whole_file(Path("old")) as file:
+        file.write(b"new")
+    assert Path("old").read_text() == "new"
+    assert not list(Path().glob("*.new")) + list(Path().glob(".*.new"))
+
+
+def test_a_link_to_a_place_where_nothing_is_yet_stays() -> None:
+    Path("link.png").symlink_to("target.png")
+    file_place("--out", Path("link.png"))
+    assert Path("link.png").is_symlink()

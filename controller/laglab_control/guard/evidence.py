@@ -13,8 +13,8 @@ from laglab_control.estimators.kalman import Triangle, weighted
 from laglab_control.past.log import Log, append, logged
 
 IMPROBABLE = 1e-6
-"""The level of each test. Successive windows share most of what is in them: of 4000 runs of 2000
-ticks of a filter that is right about itself 99.5 % stayed below."""
+"""Of a wild measurement, and of a window's spread: successive windows share most of what is in
+them, so a run of thousands of ticks seldom gets there (docs/theory.md)."""
 DEGREES = 3
 """Of one innovation."""
 WILD = chi_square_bound(IMPROBABLE, DEGREES)

@@ -38,6 +38,11 @@ def within(time: float, start: float, duration: float) -> bool:
     return -ROUNDING <= time - start < duration - ROUNDING
 
 
+def first_tick(time: float, sample_time: float) -> int:
+    """The first tick that is not earlier than `time` [s], up to the same rounding."""
+    return math.ceil((time - ROUNDING) / sample_time)
+
+
 def in_force(base: Impairments, events: Sequence[Event], time: float) -> Impairments:
     """The impairments at `time` [s]: where events overlap, the later in the list wins."""
     for event in reversed(events):

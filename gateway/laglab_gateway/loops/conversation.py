@@ -36,9 +36,6 @@ KNOCK_PERIOD = 0.5
 
 TAKEN_OVER = "another station has taken over"
 
-PATIENT_WITH_KEYS = 1.0
-"""[s] So often we say which frames we may not take."""
-
 
 class Conversation:
     """Sends, listens, records, and knows since when the station is silent."""
@@ -58,8 +55,7 @@ class Conversation:
         self._askers = Askers()
         self._begun = False
         self._knocked = -math.inf
-        self._refusals = Refusals()
-        self._tell_at = self.now() + PATIENT_WITH_KEYS
+        self._refusals = Refusals(self.now())
 
     @contextmanager
     def run(self) -> Iterator[None]:
@@ -177,10 +173,7 @@ class Conversation:
 
     def _tell_of_keys(self) -> None:
         """Now and then: whose frames we may not take, and how to mend that."""
-        if (now := self.now()) < self._tell_at:
-            return
-        self._tell_at = now + PATIENT_WITH_KEYS
-        for text in self._refusals.news([self._listener, *self._watch.listeners]):
+        for text in self._refusals.news([self._listener, *self._watch.listeners], self.now()):
             self._around.warn(text)
 
     def _look_around(self) -> None:

@@ -8,6 +8,7 @@ from weakref import WeakKeyDictionary
 from laglab_gateway.loops.datagrams import datagrams
 from laglab_gateway.services import Asker, Askers, RobotState, Services
 from laglab_protocol import (
+    LEAST_BYTES,
     Address,
     EndpointError,
     Frame,
@@ -23,9 +24,6 @@ POLL_US = 5_000
 HEARD_A_SECOND, HEARD_AT_ONCE = 32768, 2048
 """Bytes of what is said on one link that are looked at; what comes beyond has to wait."""
 
-SHORTEST_COUNTED = 64
-"""A piece costs as much as so many bytes, however short it is."""
-
 
 class Watcher:
     """One link, and who makes the frames on it. Of several who watch there, each is served apart.
@@ -37,7 +35,7 @@ class Watcher:
         self.listener = listener
         self.askers = Askers(watching=True)
         self.askers.heard_from(None, 0.0)  # where there is one far end, it need not ask
-        self.ration = Ration(HEARD_A_SECOND, HEARD_AT_ONCE)
+        self.ration = Ration(HEARD_A_SECOND, HEARD_AT_ONCE, LEAST_BYTES)
         self._trusting = trusting
         self._sender = sender
         self._senders = WeakKeyDictionary[Asker, Sender]()
@@ -77,6 +75,7 @@ class Watch:
         for watcher in self._watchers:
             with self._letting_go(watcher):
                 self._hear(watcher, now, now_us * 1e-6)
+            watcher.askers.forget_silent(now_us * 1e-6)
         for watcher, address, asker in self._all():
             if asker.pace is not None:
                 self._say(watcher, address, asker, self._services.due(asker.pace, now, now_us))
@@ -107,7 +106,7 @@ class Watch:
             taken = watcher.listener.taken
             if not taken:
                 return
-            watcher.ration.take(max(taken, SHORTEST_COUNTED))
+            watcher.ration.take(taken)
             if frames:
                 self._answer(watcher, frames, state, now)
 
@@ -116,6 +115,8 @@ class Watch:
     ) -> None:
         address = watcher.listener.link.sender
         asker = watcher.askers.heard_from(address, now)
+        if address is not None:
+            watcher.askers.forget(None)  # there is not one far end, but whoever speaks
         for frame in frames:
             replies = self._services.answer(frame, state, asker, watcher.trusts(frame))
             self._say(watcher, address, asker, replies)

@@ -21,6 +21,8 @@ ANSWERS_A_SECOND = 64.0
 MOST_ASKERS = 16
 FORGOTTEN = 10.0
 """[s] Who was silent for so long makes room for others."""
+GONE = 60.0
+"""[s] Who was silent for so long is told nothing more: a ground station calls every second."""
 
 QUESTIONS = (ParamRequestList, ParamRequestRead, Ping, Timesync)
 """What asks and changes nothing: passed over when no answer is left."""
@@ -91,6 +93,12 @@ class Askers:
     def forget(self, address: Address | None) -> None:
         """Nothing reaches it."""
         self._known.pop(address, None)
+
+    def forget_silent(self, now: float) -> None:
+        """Those who were not heard for long, at `now` [s]; the one far end of a link stays."""
+        for address, asker in self.known():
+            if address is not None and now - asker.heard > GONE:
+                self.forget(address)
 
     def known(self) -> list[tuple[Address | None, Asker]]:
         """All but the crowd."""

@@ -26,7 +26,6 @@ SEE_ARM_AND_STOP = {
     mavlink.MAV_CMD_COMPONENT_ARM_DISARM,
     mavlink.MAV_CMD_DO_FLIGHTTERMINATION,
     mavlink.MAV_CMD_REQUEST_MESSAGE,
-    mavlink.MAV_CMD_SET_MESSAGE_INTERVAL,
     mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES,
 }
 """What those may who need no key where others have one."""

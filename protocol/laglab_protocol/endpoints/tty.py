@@ -80,10 +80,12 @@ class _Tty(ABC):
 
     def offer(self, data: bytes, to: Address | None = None) -> None:
         del to
-        self._begun = self._write(self._begun)
+        waiting, self._begun = self._begun, self._write(self._begun)
         rest = data if self._begun else self._write(data)
         if rest != data:
             self._begun, self._full_since = rest, None
+        elif len(self._begun) < len(waiting):
+            self._full_since = None  # it reads, if slowly
         elif self._full_since is None:
             self._full_since = monotonic()
         elif monotonic() - self._full_since > STALL_TIMEOUT:

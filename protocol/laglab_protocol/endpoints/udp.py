@@ -12,7 +12,7 @@ from laglab_protocol.endpoints.apart import queue_for
 from laglab_protocol.endpoints.interface import Address
 from laglab_protocol.endpoints.waiting import first_bytes
 from laglab_protocol.errors import EndpointError, NoSuchPortError, PortBusyError
-from laglab_protocol.ration import Ration
+from laglab_protocol.ration import LEAST_BYTES, Ration
 
 LARGEST_DATAGRAM = 65535
 NOBODY_THERE = (ConnectionRefusedError, ConnectionResetError)
@@ -23,9 +23,6 @@ STRANGERS_DATAGRAM = 2048
 
 STRANGERS_A_SECOND = 8192
 """Bytes of strangers' that are read while there is a peer: a ground station says a tenth."""
-
-SHORTEST_COUNTED = 64
-"""A datagram costs as much as so many bytes, however short it is."""
 
 
 class _Udp(ABC):
@@ -66,7 +63,7 @@ class _Udp(ABC):
         return  # a socket outlives whoever is at the far end
 
     def receive(self, timeout: float) -> bytes:
-        return first_bytes(self._read, self._socket.fileno, timeout)
+        return first_bytes(self._read, self.fileno, timeout)
 
     @abstractmethod
     def _read(self) -> bytes | None:
@@ -100,7 +97,7 @@ class UdpIn(_Udp):
             raise _cannot("bind", self.name, error) from error
         self._address = self._socket.getsockname()
         self._apart: socket.socket | None = None
-        self._strangers = Ration(STRANGERS_A_SECOND, STRANGERS_DATAGRAM)
+        self._strangers = Ration(STRANGERS_A_SECOND, STRANGERS_DATAGRAM, LEAST_BYTES)
         self._ready = selectors.DefaultSelector()
         self._watched: set[socket.socket] = set()
 
@@ -133,15 +130,12 @@ class UdpIn(_Udp):
                 where = f"{address[0]}:{address[1]}"
                 raise _cannot(f"send to {where} from", self.name, error) from error
 
-    def receive(self, timeout: float) -> bytes:
-        return first_bytes(self._read, self.fileno, timeout)
-
     def _read(self) -> bytes | None:
         data = self._read_from(self._apart, LARGEST_DATAGRAM) if self._apart else None
         if data is None and self._may_hear_strangers:
             data = self._read_from(self._socket, STRANGERS_DATAGRAM)
             if data is not None and self.sender != self.peer:
-                self._strangers.take(max(len(data), SHORTEST_COUNTED))
+                self._strangers.take(len(data))
         return data
 
     def _read_from(self, queue: socket.socket, size: int) -> bytes | None:

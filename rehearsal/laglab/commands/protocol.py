@@ -1,10 +1,10 @@
 """`laglab protocol` and `laglab conform`."""
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from laglab.commands.group import group
 from laglab.commands.run import KeyOption
@@ -83,12 +83,14 @@ def conform(
         read_key(key)
     if junit:
         file_place("--junit", junit)
-    heading = iter([f"testing the {side} at {url}"])
+    said = False
     with status() as tell:
 
         def progress(what: str) -> None:
-            for line in heading:  # once, when URL could be opened
-                Console(stderr=True).print(line, highlight=False, soft_wrap=True)
+            nonlocal said
+            if not said:  # now that URL could be opened
+                print(f"testing the {side} at {url}", file=sys.stderr, flush=True)
+            said = True
             tell(what)
 
         report = test_conformance(url, side, key, pace=pace or "lockstep", progress=progress)

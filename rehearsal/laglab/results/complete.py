@@ -1,7 +1,6 @@
 """From a record and an ending to a run: what every way of making one has in common."""
 
 from collections.abc import Iterable
-from importlib.metadata import version
 from pathlib import Path
 from typing import NamedTuple
 
@@ -24,6 +23,7 @@ from laglab.results.shadows import (
 from laglab.results.summary import Errors, Final, Side, Summary, write_summary
 from laglab.runs.ending import Ending
 from laglab.scenario import Scenario
+from laglab.version import laglab_version
 from laglab_gateway import (
     TLOG_FILE,
     TRACE_FILE,
@@ -129,7 +129,7 @@ def summarise(
     seconds = ending.loop_seconds
     in_loop = {scenario.estimator.kind: numbers.rms_error} if compared else {}
     return Summary(
-        laglab=version("laglab"),
+        laglab=laglab_version(),
         scenario=scenario.name,
         side=way.side,
         transport=way.transport,

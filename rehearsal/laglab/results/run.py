@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.errors import NoRunError
+from laglab.errors import NoRunError, ResultsError
 from laglab.results.figure import draw
 from laglab.results.shadows import Shadow, beside, read_shadow, shadow_file
 from laglab.results.summary import Summary, read_summary
@@ -112,7 +112,7 @@ class Run:
     @property
     def _folder(self) -> Path:
         if self.directory is None:
-            raise NoRunError("this run was kept in memory alone: it has no files")
+            raise ResultsError("this run was kept in memory alone: it has no files")
         return self.directory
 
     def _shadow(self, name: str) -> Shadow:

@@ -123,14 +123,11 @@ def warnings(summary: Summary) -> list[str]:
     """What the reader must not overlook."""
     said = list(summary.warnings)
     if summary.station:
-        said += [f"alarm at tick {tick}: {cause}" for tick, cause in _alarms(summary.station)]
+        alarms = summary.station.alarms[:SHOWN]
+        said += [f"alarm at tick {alarm.tick}: {alarm.cause}" for alarm in alarms]
     if summary.timing and (missed := summary.timing.missed_deadlines):
         said.append(
             f"{missed} of {summary.ticks} ticks began more than a tick late: this machine "
             "cannot keep up; take a smaller --speed"
         )
     return said
-
-
-def _alarms(station: StationReport) -> list[tuple[int, str]]:
-    return [(alarm.tick, alarm.cause) for alarm in station.alarms[:SHOWN]]

@@ -1,5 +1,6 @@
 """Files that are written whole or not at all."""
 
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -10,25 +11,21 @@ from laglab.errors import ResultsError
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[BinaryIO]:
-    """A new file to write into; what was not written to the end is removed again.
+    """To write into; it takes the place of what was there when all is written, and not before.
 
     Raises: ResultsError.
     """
+    beside = path.with_name(f".{os.getpid()}.new") if path.is_file() or not path.exists() else path
     try:
-        file = path.open("wb")
-    except OSError as error:
-        raise _cannot_write(path, error) from error
-    try:
-        with file:
+        with beside.open("wb") as file:
             yield file
+        if beside is not path:
+            beside.replace(path)
     except BaseException as error:
-        if path.is_file():
+        if beside is not path:
             with suppress(OSError):
-                path.unlink()
+                beside.unlink(missing_ok=True)
         if isinstance(error, OSError):
-            raise _cannot_write(path, error) from error
+            problem = error.strerror or error
+            raise ResultsError(f"cannot write {path}: {problem}") from error
         raise
-
-
-def _cannot_write(path: Path, error: OSError) -> ResultsError:
-    return ResultsError(f"cannot write {path}: {error.strerror or error}")

@@ -24,7 +24,7 @@ def folder_place(named: str, path: Path) -> Path:
 def file_place(named: str, path: Path) -> Path:
     """The file, which can be written; what it holds is still there. Raises PlaceError."""
     try:
-        there = path.exists()
+        there = path.exists() or path.is_symlink()
         if path.is_dir():
             raise PlaceError(f"{named} {path}: that is a folder: name a file")
         if path.is_file() or not there:  # to open a pipe has consequences

@@ -1,10 +1,9 @@
 """A robot that somebody moves by hand, as the scenario has it."""
 
-import math
 from collections.abc import Sequence
 
 from laglab.scenario.tables.plant import PlantEvent
-from laglab_gateway import Plant, Reading
+from laglab_gateway import Plant, Reading, first_tick
 
 
 class MovedByHand:
@@ -15,8 +14,7 @@ class MovedByHand:
         self._tick = 0
         self._due: dict[int, list[PlantEvent]] = {}
         for event in events:
-            tick = math.ceil(round(event.at / sample_time, 6))
-            self._due.setdefault(tick, []).append(event)
+            self._due.setdefault(first_tick(event.at, sample_time), []).append(event)
         self._move()
 
     def read(self) -> Reading:
@@ -27,8 +25,7 @@ class MovedByHand:
         """One tick, at whose end somebody may be there."""
         self._plant.step(v, omega)
         self._tick += 1
-        if self._due:
-            self._move()
+        self._move()
 
     def place(self, x: float, y: float, theta: float) -> None:
         """The plant's own."""

@@ -66,7 +66,6 @@ class Failed(Struct, frozen=True, tag=True):
 class Computed(Struct, frozen=True, tag=True):
     """One of the jobs is done."""
 
-    number: int
     answer: Raw
 
 

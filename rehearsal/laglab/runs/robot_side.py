@@ -29,6 +29,7 @@ from laglab_gateway import (
     Services,
     Surroundings,
     Timesyncing,
+    UnplaceableError,
     Watch,
     Watcher,
     read_link_log,
@@ -196,6 +197,11 @@ def open_robot(scenario: Scenario, setup: Setup) -> Iterator[OpenRobot]:
                     gateway.services, codec, serve, setup.unsigned, setup.key is not None
                 )
         else:
+            if scenario.plant.event:
+                raise UnplaceableError(
+                    f"plant.event: {setup.plant} is a real robot, which nobody can move from here: "
+                    "leave the events out"
+                )
             with open_endpoint(setup.plant) as robot:
                 refuse_open_door(robot, None, setup.unsigned)
                 relay = _relay(scenario, codec.sender, setup.armed)

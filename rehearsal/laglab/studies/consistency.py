@@ -23,7 +23,7 @@ from laglab.results.numbers import robot_pose
 from laglab.scenario import Scenario, changed
 from laglab.studies.overhearing import Known, Overhearing
 from laglab.studies.workers import shared_out
-from laglab_control.chi_square import chi_square_bound
+from laglab_control import chi_square_bound
 from laglab_gateway import Trace
 
 Array = NDArray[np.float64]
@@ -142,7 +142,7 @@ def samples(
     Raises: RunError, when a worker fails or dies.
     """
     jobs = [Job(nth(scenario, number).to_toml(), tuple(estimators)) for number in range(seeds)]
-    for _, answer in shared_out(judge, jobs, workers):
+    for answer in shared_out(judge, jobs, workers):
         yield {name: _unpacked(table) for name, table in answer.samples.items()}
 
 

@@ -8,8 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab_control import Applied, Control, Controller, Echo, Measured
-from laglab_control.estimators.kalman import normalised_squared
+from laglab_control import Applied, Control, Controller, Echo, Measured, normalised_squared
 
 Array = NDArray[np.float64]
 NOTHING = np.full((3, 3), np.nan)

@@ -23,8 +23,8 @@ STOCK = ("delayed-ekf", "popf", "ekf")
 """Compared as they are."""
 MOVED_AT = 5.0
 """[s] When somebody moves the robot by half a metre."""
-NOTICED_BY = 2.0
-"""[s] So long after it was noticed the error is looked at."""
+LOOKED_AT_AFTER = 2.0
+"""[s] So long after the first alarm the error is looked at."""
 
 
 def both(**impairments: object) -> Overrides:
@@ -38,6 +38,10 @@ OUTAGES = [{"at": at, "duration": 1.0, "link": {"loss": 1.0}} for at in (2.0, 6.
 EVERYTHING = both(
     loss=0.3, extra_delay=JITTER, reorder=0.2, duplicate=0.02, bit_error_rate=1e-5, bandwidth=115200
 )
+
+
+Station = dict[str, str | bool]
+"""What makes a station: scenario keys."""
 
 
 class Condition(NamedTuple):
@@ -69,8 +73,16 @@ class Trial(Struct, frozen=True):
 
     condition: str
     station: str
-    scenario: str
-    """As TOML."""
+    how: Station
+    seed: int
+
+    @property
+    def scenario(self) -> Scenario:
+        """What is run."""
+        base, different = CONDITIONS[self.condition]
+        scenario = load(base, {**different, **self.how, "seed": self.seed})
+        popf = scenario.estimator.kind.startswith("popf")
+        return changed(scenario, {"estimator.initial_covariance": 1e-4}) if popf else scenario
 
 
 class Fared(Struct, frozen=True):
@@ -83,13 +95,13 @@ class Fared(Struct, frozen=True):
     """Of the estimate [m, m, rad]; None when there was none."""
     nees: float | None
     """Averaged over the ticks >= m; None where nothing was claimed."""
-    alarms: tuple[int, ...]
-    """The ticks of the first ones."""
+    alarmed: bool
+    """Whether the guard raised an alarm."""
     late_error: float | None
-    """[m] NOTICED_BY after the first alarm; None without one, or when the run was over."""
+    """[m] LOOKED_AT_AFTER after the first alarm; None without one, or when the run was over."""
 
 
-def stations(default: str) -> dict[str, Overrides]:
+def stations(default: str) -> dict[str, Station]:
     """The default station, `popf` with a guard, and the filters as they are."""
     return {
         f"{default}, guarded": {"estimator.kind": default, "estimator.guard": True},
@@ -99,28 +111,24 @@ def stations(default: str) -> dict[str, Overrides]:
 
 
 def fared(
-    conditions: Sequence[str], compared: Mapping[str, Overrides], seeds: int, workers: int
+    conditions: Sequence[str],
+    compared: Mapping[str, Station],
+    seeds: int,
+    workers: int,
 ) -> Iterator[Fared]:
     """Every condition with every station and seed, as they are done. Raises RunError."""
     trials = [
-        Trial(condition, station, _scenario(CONDITIONS[condition], how, seed).to_toml())
+        Trial(condition, station, how, seed)
         for seed in range(1, seeds + 1)
         for condition in conditions
         for station, how in compared.items()
     ]
-    for _, one in shared_out(tried, trials, workers):
-        yield one
-
-
-def _scenario(condition: Condition, station: Overrides, seed: int) -> Scenario:
-    scenario = load(condition.scenario, {**condition.overrides, **station, "seed": seed})
-    popf = scenario.estimator.kind.startswith("popf")
-    return changed(scenario, {"estimator.initial_covariance": 1e-4}) if popf else scenario
+    return shared_out(tried, trials, workers)
 
 
 def tried(trial: Trial) -> Fared:
     """In a worker: one run."""
-    scenario = Scenario.from_toml(trial.scenario)
+    scenario = trial.scenario
     said: dict[str, list[Known]] = {}
     done = run(scenario, controller=partial(Overhearing, said=said))
     nees = judged(said[scenario.estimator.kind], done.trace).nees[scenario.link.measurement_delay :]
@@ -131,7 +139,7 @@ def tried(trial: Trial) -> Fared:
         done.summary.converged,
         (rms.x, rms.y, rms.theta) if rms else None,
         float(np.nanmean(nees)) if np.isfinite(nees).any() else None,
-        tuple(done.alarms),
+        bool(done.alarms),
         _late_error(done),
     )
 
@@ -140,5 +148,5 @@ def _late_error(done: Run) -> float | None:
     if not done.alarms:
         return None
     off = deviation(done.trace, loop_estimates(done.trace))
-    tick = done.alarms[0] + round(NOTICED_BY / done.scenario.sample_time)
+    tick = done.alarms[0] + round(LOOKED_AT_AFTER / done.scenario.sample_time)
     return float(np.hypot(*off[tick, :2])) if tick < len(off) else None

@@ -19,11 +19,11 @@ Answer = TypeVar("Answer", bound=Struct)
 
 
 class Share(Struct, frozen=True):
-    """A worker's part of the jobs, by their numbers."""
+    """A worker's part of the jobs."""
 
     function: str
     """MODULE:FUNCTION, which does one."""
-    jobs: dict[int, Raw]
+    jobs: list[Raw]
 
 
 class _Kinds(NamedTuple):
@@ -42,8 +42,8 @@ class _Kinds(NamedTuple):
 
 def shared_out(
     function: Callable[[Job], Answer], jobs: Sequence[Job], workers: int
-) -> Iterator[tuple[int, Answer]]:
-    """Each job's number and answer, in the order in which they are done.
+) -> Iterator[Answer]:
+    """The answers, in the order in which they are done.
 
     `function` stands at the top of a module. Raises RunError, when a worker fails or dies.
     """
@@ -53,26 +53,25 @@ def shared_out(
     with ExitStack() as stack:
         waiting = {}
         for first in range(min(workers, len(jobs))):
-            numbers = range(first, len(jobs), workers)
-            share = Share(target, {i: Raw(msgspec.json.encode(jobs[i])) for i in numbers})
+            share = Share(target, [Raw(msgspec.json.encode(job)) for job in jobs[first::workers]])
             name = f"worker {first + 1}"
             stack.enter_context(started(name, f"{__name__}:work", share, inbox))
-            waiting[name] = len(numbers)
+            waiting[name] = len(share.jobs)
         while any(waiting.values()):
-            for number, answer in _arrived(inbox, waiting):
-                yield number, msgspec.json.decode(answer, type=kind)
+            for answer in _arrived(inbox, waiting):
+                yield msgspec.json.decode(answer, type=kind)
 
 
-def _arrived(inbox: Inbox, waiting: dict[str, int]) -> Iterator[tuple[int, Raw]]:
+def _arrived(inbox: Inbox, waiting: dict[str, int]) -> Iterator[Raw]:
     """What the next letter holds; counts it as no longer waited for."""
     try:
         child, report = inbox.get(timeout=LOOK_UP)
     except Empty:
         return
     match report:
-        case Computed(number, answer):
+        case Computed(answer):
             waiting[child.name] -= 1
-            yield number, answer
+            yield answer
         case Failed(reason):
             raise RunError(reason)
         case Ended(how) if waiting[child.name]:
@@ -85,8 +84,8 @@ def work(share: Share, tell: Tell) -> None:
     function = getattr(importlib.import_module(module), name)
     kind = _Kinds.of(function).job
     try:
-        for number, job in share.jobs.items():
+        for job in share.jobs:
             answer = function(msgspec.json.decode(job, type=kind))
-            tell(Computed(number, Raw(msgspec.json.encode(answer))))
+            tell(Computed(Raw(msgspec.json.encode(answer))))
     except (LaglabError, *SIDE_ERRORS) as error:
         tell(Failed(str(error), begun=True))
