@@ -22,20 +22,22 @@ def conform(
     key_file: Path | None = None,
     waits: Waits | None = None,
     pace: Pace = "lockstep",
+    silent: bool = False,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Report:
     """Test the robot, or the controller, that answers at `url`; its run is over afterwards.
 
     A robot is told to stand still throughout; `pace` says whether it waits for each command or has
-    a clock of its own; `progress` is told what is tried. Raises the EndpointError and KeyFileError
-    trees.
+    a clock of its own; `silent`: only whether it gives a silent station up. `progress` is told what
+    is tried. Raises the EndpointError and KeyFileError trees.
     """
     with open_endpoint(url) as endpoint:
         talk = endpoint, waits or Waits(), key_file
         if side == "controller":
             results = carry_out(controller.ITEMS, controller.ControllerSession(*talk), progress)
         elif pace == "lockstep":
-            results = carry_out(lockstep.ITEMS, lockstep.LockstepSession(*talk), progress)
+            items = lockstep.SILENT if silent else lockstep.ITEMS
+            results = carry_out(items, lockstep.LockstepSession(*talk), progress)
         else:
             results = carry_out(freerunning.ITEMS, freerunning.FreeRunningSession(*talk), progress)
     return Report(side, results)

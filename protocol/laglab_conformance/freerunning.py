@@ -4,23 +4,26 @@ import time
 from functools import partial
 from itertools import pairwise
 
+from laglab_conformance.ending import ENDS
 from laglab_conformance.framing import RECEIVING, SENDING, SIGNING
 from laglab_conformance.items import Item
 from laglab_conformance.robot import (
     BEGINS,
-    ENDS,
+    CREEP,
     NOT_FINITE,
     NOT_MEANT,
     RECALLS,
     SETTINGS,
-    STAMPED,
     RobotSession,
+    creep,
+    creeps,
     is_after,
     is_tick,
     ticks,
 )
 from laglab_conformance.services import SERVICES
-from laglab_conformance.session import NoReactionError
+from laglab_conformance.session import DoesNotApplyError, NoReactionError
+from laglab_conformance.stamps import STAMPED
 from laglab_protocol.framing.frame import Frame
 from laglab_protocol.messages.loop import Measurement
 
@@ -31,28 +34,42 @@ AT_ONCE = 0.0003
 """[s] What comes sooner was there already."""
 MOST_PILED_UP = 1000
 
+COMMAND_EVERY = 0.05
+"""[s] So often a robot is sure not to miss its station."""
+
+STAMPS_APART = 3
+
+LINK_TIMEOUT = 0.5
+"""[s] After so long without a command a robot begins to slow down."""
+
 
 class FreeRunningSession(RobotSession):
     """Its station. The stimulus is a command stamped with the newest tick that was heard, the
-    reaction a measurement that tells of it, or of a later one, as the command in force."""
+    reaction a measurement that tells of it, or of a later one, as the command in force.
+
+    A robot that names a command by a stamp that is one off has reacted: which item that fails is
+    another question. So commands are stamped three ticks apart.
+    """
 
     followed = 0
     """The stamp of the last command that it has followed."""
 
     def is_reaction(self, frame: Frame) -> bool:
-        return isinstance(frame.message, Measurement) and frame.message.command_tick >= self.tick
+        told = frame.message
+        return isinstance(told, Measurement) and told.command_tick >= self.tick - 1
 
     def go_on(self) -> None:
-        """To a later tick: the measurement that told of this one may have come before its own."""
+        """To a tick that is later than all commands by three. Raises NoReactionError."""
         self.followed = self.tick
         super().go_on()
-        if self.tick == self.followed:
-            self.listen(self.waits.react, partial(is_after, self.followed))
+        while self.tick < max(self.said, default=-STAMPS_APART) + STAMPS_APART:
+            if not self.listen(self.waits.react, partial(is_after, self.tick)):
+                raise NoReactionError(f"no tick comes after {self.tick}")
             super().go_on()
 
     def exchange(self) -> None:
         """With the newest tick: what was refused may have used up the one before."""
-        super().go_on()
+        self.go_on()
         super().exchange()
 
 
@@ -66,19 +83,27 @@ def _goes_on(session: FreeRunningSession) -> str | None:
 
 def _even(session: FreeRunningSession) -> str | None:
     session.exchange()
-    before, after = _rate(session), _rate(session)
-    if abs(before - after) > UNEVEN * max(before, after):
+    (before, pause), (after, other_pause) = _rate(session), _rate(session)
+    session.go_on()
+    if abs(before - after) > (UNEVEN + pause + other_pause) * max(before, after):
         return f"{before:.0f} ticks a second, then {after:.0f}"
     return None
 
 
-def _rate(session: FreeRunningSession) -> float:
-    """Ticks a second, over half as long as a reaction may take."""
+def _rate(session: FreeRunningSession) -> tuple[float, float]:
+    """Ticks a second, over half as long as a reaction may take; and which share of that time the
+    longest pause between ticks took, for they may come several at once."""
     began, first = _next_tick(session)
-    session.send(session.command(first))  # a robot may give up a silent station
-    session.listen(session.waits.react / 2, lambda _: False)
+    start, over = len(session.heard), began + session.waits.react / 2
+    while time.monotonic() < over:
+        # As a station does: a robot may slow down without.
+        session.send(session.command(ticks(session)[-1].tick))
+        session.listen(COMMAND_EVERY, lambda _: False)
     ended, last = _next_tick(session)
-    return (last - first) / (ended - began)
+    heard = zip(session.heard[start:], session.heard_at[start:], strict=True)
+    at = [began, *(when for frame, when in heard if is_tick(frame))]
+    longest = max(after - before for before, after in pairwise(at))
+    return (last - first) / (ended - began), longest / (ended - began)
 
 
 def _next_tick(session: FreeRunningSession) -> tuple[float, int]:
@@ -93,14 +118,44 @@ def _next_tick(session: FreeRunningSession) -> tuple[float, int]:
 
 
 def _earlier(session: FreeRunningSession) -> str | None:
-    """Stamped one tick earlier than the newest, and later than all that were sent before that."""
-    session.quiet()
+    """Stamped earlier than the newest, and later than all that were sent before that."""
     session.exchange()
-    earlier = session.followed - 1
+    earlier = session.followed - STAMPS_APART + 1
     session.send(session.command(earlier))
     if session.listen(session.refusal, partial(_tells_of, earlier)):
         return f"command {earlier} was followed after {session.followed}"
     return None
+
+
+def _same(session: FreeRunningSession) -> str | None:
+    """Standing still by one command, it does not creep by another with the same stamp."""
+    _creep(session)
+    session.exchange()
+    session.send(session.command(session.followed, v=CREEP))
+    if session.listen(session.refusal, creeps):
+        return f"command {session.followed} was followed a second time"
+    return None
+
+
+def _stops(session: FreeRunningSession) -> str | None:
+    """Creeping, it is left alone: it must come to a standstill, and the next command ends that."""
+    _creep(session)
+    began = time.monotonic()
+    if not session.listen(LINK_TIMEOUT + session.waits.react, _stands):
+        return f"{time.monotonic() - began:.1f} s after the last command it still follows it"
+    if creep(session) is None:
+        return "it has stopped, and does not follow the next command"
+    session.exchange()
+    return None
+
+
+def _creep(session: FreeRunningSession) -> None:
+    if creep(session) is None:
+        raise DoesNotApplyError(f"it cannot be tried standing still: {CREEP} m/s it does not drive")
+
+
+def _stands(frame: Frame) -> bool:
+    return isinstance(frame.message, Measurement) and frame.message.speeds == (0.0, 0.0)
 
 
 def _tells_of(stamp: int, frame: Frame) -> bool:
@@ -120,7 +175,9 @@ ITEMS: list[Item[FreeRunningSession]] = [
     Item("timing", "its ticks come evenly", _even),
     *RECEIVING,
     Item("ticks", "a command that is older than the newest is not followed", _earlier),
-    NOT_MEANT,
+    Item("ticks", "a command stamped like the newest is not followed", _same),
+    Item("ticks", "it stops when no command comes", _stops),
+    *NOT_MEANT,
     NOT_FINITE,
     SETTINGS,
     RECALLS,
@@ -129,5 +186,5 @@ ITEMS: list[Item[FreeRunningSession]] = [
     Item("ticks", "each tick comes once", _one_by_one),
     *STAMPED,
     *SENDING,
-    ENDS,
+    *ENDS,
 ]

@@ -2,32 +2,33 @@
 
 from itertools import pairwise
 
+from laglab_conformance.ending import ENDS, GIVES_UP
 from laglab_conformance.framing import RECEIVING, SENDING, SIGNING
 from laglab_conformance.items import SOON, Item, reacts_soon, refused
 from laglab_conformance.robot import (
     BEGINS,
-    ENDS,
     NOT_FINITE,
     NOT_MEANT,
     RECALLS,
     SETTINGS,
-    STAMPED,
     Batch,
     RobotSession,
     batches,
     is_after,
     is_tick,
-    measurements,
     ticks,
 )
 from laglab_conformance.services import SERVICES
-from laglab_conformance.session import Session
+from laglab_conformance.session import DoesNotApplyError, Session
+from laglab_conformance.stamps import STAMPED, no_earlier, tick_comes_first
 from laglab_protocol.framing.frame import Frame
 from laglab_protocol.messages.loop import Command, Tick
 
 
 class LockstepSession(RobotSession):
     """Its station. The reaction to the command for its tick is its next tick."""
+
+    longest_delay = 64
 
     def is_reaction(self, frame: Frame) -> bool:
         return is_after(self.tick, frame)
@@ -49,6 +50,8 @@ def _repeats(session: LockstepSession) -> str | None:
 
 
 def _repeats_the_same(session: LockstepSession) -> str | None:
+    if tick_comes_first(session):
+        raise DoesNotApplyError("its measurements come after their tick")
     said: dict[int, tuple[Batch, Tick]] = {}
     for batch, last in batches(session):
         if said.setdefault(last.tick, (batch, last)) != (batch, last):
@@ -62,13 +65,6 @@ def _one_by_one(session: LockstepSession) -> str | None:
     for before, after in pairwise(ticks(session)):
         if after.tick - before.tick not in (0, 1):
             return f"tick {after.tick} follows tick {before.tick}"
-    return None
-
-
-def _in_order(session: LockstepSession) -> str | None:
-    for before, after in pairwise(measurements(session)):
-        if after.command_tick < before.command_tick:
-            return f"command {after.command_tick} is in force after {before.command_tick}"
     return None
 
 
@@ -101,7 +97,7 @@ ITEMS: list[Item[LockstepSession]] = [
         refused(lambda session, _: session.forged(_at(session, -1)).raw),
     ),
     Item("lock-step", "an answer waits for its estimate", _incomplete),
-    NOT_MEANT,
+    *NOT_MEANT,
     NOT_FINITE,
     Item("timing", f"it goes on within {SOON} s", reacts_soon),
     SETTINGS,
@@ -110,7 +106,10 @@ ITEMS: list[Item[LockstepSession]] = [
     *SIGNING,
     Item("lock-step", "a repeat brings the same messages", _repeats_the_same),
     *STAMPED,
-    Item("lock-step", "a later measurement tells of no earlier command", _in_order),
+    Item("lock-step", "a later measurement tells of no earlier command", no_earlier),
     *SENDING,
-    ENDS,
+    *ENDS,
+    GIVES_UP,
 ]
+SILENT: list[Item[LockstepSession]] = [BEGINS, GIVES_UP]
+"""For a robot that has but one run, which END would end."""

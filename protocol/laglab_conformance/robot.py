@@ -2,24 +2,24 @@
 
 import math
 import time
+from functools import partial
+from pathlib import Path
 
 from msgspec.structs import replace
 
 from laglab_conformance.forge import Forged
 from laglab_conformance.items import Item, refused
-from laglab_conformance.session import DoesNotApplyError, NoReactionError, Session
+from laglab_conformance.session import DoesNotApplyError, NoReactionError, Session, Waits
+from laglab_protocol.endpoints import Endpoint
 from laglab_protocol.framing.frame import Frame
 from laglab_protocol.messages.base import Message
 from laglab_protocol.messages.loop import (
-    NO_COMMAND,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
     STATION_COMPONENT,
     STATION_SYSTEM,
     Applied,
     Command,
-    End,
-    EndReason,
     Measurement,
     Recall,
     Settings,
@@ -29,8 +29,11 @@ from laglab_protocol.messages.standard import STATION_HEARTBEAT, CommandAck, Com
 
 Batch = list[Measurement | Applied]
 
-ANOTHER = 7
-"""The system of a robot that is not under test."""
+ANOTHER, EVERYBODY = 7, 0
+"""Systems that are not, or not by name, the robot under test."""
+
+CREEP = 1e-6
+"""[m/s] Nobody sees it, and yet measurements tell it from a standstill."""
 
 
 class RobotSession(Session):
@@ -39,9 +42,20 @@ class RobotSession(Session):
     system, component = STATION_SYSTEM, STATION_COMPONENT
     peer = (ROBOT_SYSTEM, ROBOT_COMPONENT)
     tick = 0
+    longest_delay = 0
+    """Exchanges after the one in which a command was taken, by which a measurement tells of it."""
+
+    def __init__(self, endpoint: Endpoint, waits: Waits, key_file: Path | None) -> None:
+        super().__init__(endpoint, waits, key_file)
+        self.said: set[int] = set()
+        """The stamps of all commands."""
 
     def connect(self) -> None:
-        deadline = time.monotonic() + self.waits.appear
+        self.meet(self.waits.appear)
+
+    def meet(self, seconds: float) -> None:
+        """Greet it until it ticks. Raises NoReactionError when it does not within `seconds`."""
+        deadline = time.monotonic() + seconds
         while time.monotonic() < deadline:
             self.send(STATION_HEARTBEAT)
             if frame := self.listen(self.waits.refuse, is_tick):
@@ -52,6 +66,12 @@ class RobotSession(Session):
 
     def stimulus(self) -> Message:
         return self.command(self.tick)
+
+    def forged(self, message: Message | None = None) -> Forged:
+        message = self.stimulus() if message is None else message
+        if isinstance(message, Command):
+            self.said.add(message.tick)
+        return super().forged(message)
 
     def command(self, tick: int, v: float = 0.0, estimates: int = 0) -> Command:
         """Stand still."""
@@ -108,6 +128,26 @@ def batches(session: RobotSession) -> list[tuple[Batch, Tick]]:
     return whole[1:]
 
 
+def creep(session: RobotSession) -> Measurement | None:
+    """Creep, by a command with the session's tick; the first measurement that tells of that, or
+    None when none does, as of a robot that drives no speed so low. Raises NoReactionError."""
+    before = len(session.heard)
+    session.send(session.command(session.tick, v=CREEP))
+    if not session.reacts(session.waits.react):
+        raise NoReactionError(f"no reaction to a command of {CREEP} m/s at tick {session.tick}")
+    for _ in range(session.longest_delay):
+        if any(map(creeps, session.heard[before:])):
+            break
+        session.exchange()
+    told = (frame.message for frame in session.heard[before:] if creeps(frame))
+    return next((each for each in told if isinstance(each, Measurement)), None)
+
+
+def creeps(frame: Frame) -> bool:
+    """Whether it tells that the robot creeps."""
+    return isinstance(frame.message, Measurement) and frame.message.v == CREEP
+
+
 def _begins(session: RobotSession) -> str | None:
     session.connect()
     return None
@@ -121,42 +161,9 @@ def _not_finite(session: RobotSession) -> str | None:
     return None
 
 
-def _counts(session: RobotSession) -> str | None:
-    for batch, last in batches(session):
-        if len(batch) != last.measurements:
-            return f"{last} came after {len(batch)} of them"
-    return None
-
-
-def _echoes(session: RobotSession) -> str | None:
-    """Each measurement names an earlier command; none moves, but by a command before ours."""
-    first = ticks(session)[0].tick
-    for each in measurements(session):
-        if not NO_COMMAND <= each.command_tick < max(each.tick, 0):
-            return f"the measurement of tick {each.tick} names command {each.command_tick}"
-        others = NO_COMMAND < each.command_tick < first
-        if each.speeds != (0.0, 0.0) and not others:
-            return f"the measurement of tick {each.tick} moves, though nobody commanded it"
-    return None
-
-
-def _ends(session: RobotSession) -> str | None:
-    """It answers END with the same reason."""
-    end = End(session.tick, EndReason.INTERRUPTED)
-    session.send(end)
-    answer = session.listen(session.waits.react, lambda frame: isinstance(frame.message, End))
-    if answer is None:
-        return "END is not answered"
-    assert isinstance(answer.message, End)
-    if answer.message.reason != end.reason:
-        return f"END with reason {end.reason} is answered with {answer.message.reason}"
-    session.quiet()
-    return "it goes on after END" if session.listen(session.refusal, is_tick) else None
-
-
-def _for_another(session: Session, _: Forged) -> bytes:
+def _meant_for(system: int, session: Session, _: Forged) -> bytes:
     assert isinstance(session, RobotSession)
-    other = replace(session.command(session.tick), target_system=ANOTHER)
+    other = replace(session.command(session.tick), target_system=system)
     return session.forged(other).raw
 
 
@@ -195,11 +202,17 @@ def _as_asked(told: Applied, asked: Recall, newest: Measurement) -> str | None:
 
 BEGINS = Item("ticks", "it begins when a station is heard", _begins)
 NOT_FINITE = Item("ticks", "it survives a command that is not finite", _not_finite)
-NOT_MEANT = Item("ticks", "a command for another robot is not followed", refused(_for_another))
-STAMPED = [
-    Item("ticks", "the tick counts its measurements", _counts),
-    Item("ticks", "measurements tell the command in force", _echoes),
+NOT_MEANT = [
+    Item(
+        "ticks",
+        "a command for another robot is not followed",
+        refused(partial(_meant_for, ANOTHER)),
+    ),
+    Item(
+        "ticks",
+        "a command for no robot by name is not followed",
+        refused(partial(_meant_for, EVERYBODY)),
+    ),
 ]
 RECALLS = Item("ticks", "it recalls what was in force", _recalls, mandatory=False)
 SETTINGS = Item("ticks", "it tells its settings", _settings, mandatory=False)
-ENDS = Item("ticks", "it answers END", _ends)

@@ -37,6 +37,15 @@ def _acknowledges(session: RobotSession) -> str | None:
     return None if ack.result == expected else f"answered with MAV_RESULT {ack.result}"
 
 
+def _acknowledges_us(session: RobotSession) -> str | None:
+    """Or nobody by name: older senders leave both out."""
+    ack = session.order(NO_SUCH_COMMAND)
+    target = ack.target_system, ack.target_component
+    us = session.system, session.component
+    meant = all(told in (0, own) for told, own in zip(target, us, strict=True))
+    return None if meant else f"it is meant for {target}, {us} asked"
+
+
 def _lists_parameters(session: RobotSession) -> str | None:
     first = session.ask(ParamRequestList(*session.peer), ParamValue).message
     assert isinstance(first, ParamValue)
@@ -67,6 +76,7 @@ def _answers_ping(session: RobotSession) -> str | None:
 
 SERVICES: list[Item[RobotSession]] = [
     Item("services", "an unknown command is acknowledged as such", _acknowledges),
+    Item("services", "an acknowledgement is meant for who asked", _acknowledges_us),
     _reports(mavlink.MAVLINK_MSG_ID_HEARTBEAT, Heartbeat),
     _reports(mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION, AutopilotVersion),
     Item("services", "it lists its parameters", _lists_parameters, mandatory=False),

@@ -48,8 +48,12 @@ class Session(ABC):
         self.signer = Signer(self.key, (0, self.system, self.component)) if self.key else None
         self.receiver = Receiver(Verifier(self.key) if self.key else None)
         self.heard: list[Frame] = []
+        self.heard_at: list[float] = []
+        """When each of them came [s]; those of one datagram came at once."""
         self.noise_before = 0
         """Bytes in no frame before the first frame: we may have come in the middle of one."""
+        self.over = False
+        """Whether we have ended its run."""
         self._sequence = 0
         self._slowest = 0.0
         self._listener = Listener(endpoint, self.receiver)
@@ -61,7 +65,9 @@ class Session(ABC):
 
     @property
     def ended(self) -> End | None:
-        """The peer's word that its run is over."""
+        """The peer's word that its run is over, when it was not we who ended it."""
+        if self.over:
+            return None
         ends = (each.message for each in self.heard if isinstance(each.message, End))
         return next(ends, None)
 
@@ -109,6 +115,7 @@ class Session(ABC):
             if not self.heard:
                 self.noise_before = self.receiver.counters.noise
             self.heard += frames
+            self.heard_at += [time.monotonic()] * len(frames)
         return frames
 
     def reacts(self, seconds: float) -> bool:
@@ -124,7 +131,7 @@ class Session(ABC):
         """An ordinary stimulus and its reaction. Raises NoReactionError."""
         self.endpoint.send(self.forged().raw)
         if not self.reacts(self.waits.react):
-            raise NoReactionError(f"no reaction to {self.stimulus()}")
+            raise NoReactionError(f"no reaction to {self.stimulus()} within {self.waits.react:g} s")
 
     def quiet(self) -> None:
         """Take in what is still under way."""

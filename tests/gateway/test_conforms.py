@@ -2,6 +2,7 @@
 
 import threading
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from laglab_gateway import (
     Gateway,
     GatewayConfig,
     Patience,
+    StationSilentError,
     Surroundings,
     serve_lockstep,
     serve_realtime,
@@ -83,6 +85,17 @@ def test_our_robot_conforms(
         report = conform(at, "robot", key_file, pace=pace)
 
     assert report.failed == [], report.table()
+
+
+def test_our_robot_gives_up_a_silent_station(stack: ExitStack) -> None:
+    endpoint = stack.enter_context(open_endpoint("udpin://:0"))
+    url = endpoint.name.replace("udpin", "udpout")
+    robot = stack.enter_context(ThreadPoolExecutor(1)).submit(serve, endpoint, None, "lockstep")
+    report = conform(url, "robot", None, Quick(3.0, 1.0, 0.1), silent=True)
+
+    assert report.failed == [], report.table()
+    with pytest.raises(StationSilentError):
+        robot.result()
 
 
 def test_a_run_that_ends_too_soon_is_told_from_a_robot_that_is_deaf(stack: ExitStack) -> None:

@@ -10,94 +10,17 @@ from xml.etree import ElementTree
 import pytest
 
 from laglab_conformance import Pace, Report, Waits, conform, controller, freerunning, lockstep
+from laglab_conformance.ending import GIVES_UP
 from laglab_conformance.items import Item
 from laglab_protocol import make_key, open_endpoint
 
-from .reference_peers import Controller, FreeRunningRobot, Robot
+from .faults import CONTROLLER, FREE_RUNNING, ROBOT, SIGNED
+from .free_running_robots import FreeRunningRobot
+from .reference_controller import Controller
+from .reference_robots import Robot
 
 QUICK = Waits(appear=3.0, react=1.0, refuse=0.1)
 
-BOTH = {
-    "compares half of the CRC": "a corrupted frame is refused",
-    "knows no CRC_EXTRA": "another definition of the message is refused",
-    "takes any incompatibility flag": "unknown incompatibility flags are refused",
-    "refuses compatibility flags": "unknown compatibility flags are taken",
-    "refuses untrimmed payloads": "untrimmed payloads are taken",
-    "refuses longer payloads": "longer payloads of later versions are taken",
-    "half a frame eats the next": "a frame cut short does not eat the next",
-    "chokes on garbage": "garbage before a frame costs nothing",
-    "chokes on a false start": "a false start before a frame costs nothing",
-    "chokes on MAVLink 1": "MAVLink 1 does no harm",
-    "chokes on unknown messages": "an unknown message is passed over",
-    "obeys anybody": "another system is not obeyed",
-    "obeys any component": "another component of the system is not obeyed",
-    "sends stray bytes": "it sends nothing but frames",
-    "skips numbers": "it numbers its frames one by one",
-    "sends zeros": "it leaves trailing zeros at home",
-    "keeps its settings to itself": "it tells its settings",
-}
-SIGNED = {
-    "believes the unsigned": "unsigned frames are refused",
-    "believes any signature": "frames signed with another key are refused",
-    "believes old frames": "old timestamps are refused",
-    "signs not all": "it signs what it sends",
-}
-ROBOT = BOTH | {
-    "never repeats": "an unanswered tick is repeated",
-    "measures again for a repeat": "a repeat brings the same messages",
-    "miscounts measurements": "the tick counts its measurements",
-    "moves by itself": "measurements tell the command in force",
-    "goes back to earlier commands": "a later measurement tells of no earlier command",
-    "leaves ticks out": "it goes from tick to tick",
-    "takes later commands": "a command for a later tick is no answer",
-    "takes earlier commands": "a command for an earlier tick is no answer",
-    "does not wait for estimates": "an answer waits for its estimate",
-    "stumbles over NaN": "it survives a command that is not finite",
-    "is slow": "it goes on within 0.25 s",
-    "accepts any command": "an unknown command is acknowledged as such",
-    "does not report 0": "it reports Heartbeat on request",
-    "does not report 148": "it reports AutopilotVersion on request",
-    "loses parameters": "it lists its parameters",
-    "mixes names up": "it reads a parameter by index and name",
-    "does not answer pings": "it answers a ping",
-    "forgets": "it recalls what was in force",
-    "recalls amiss": "it recalls what was in force",
-    "takes any target": "a command for another robot is not followed",
-    "ignores END": "it answers END",
-    "goes on after END": "it answers END",
-    "gives another reason": "it answers END",
-}
-LOCKSTEP_ALONE = {
-    "never repeats",
-    "measures again for a repeat",
-    "goes back to earlier commands",
-    "leaves ticks out",
-    "takes later commands",
-    "takes earlier commands",
-    "does not wait for estimates",
-    "is slow",
-}
-FREE_RUNNING = {fault: item for fault, item in ROBOT.items() if fault not in LOCKSTEP_ALONE} | {
-    "waits for its first command": "it waits for no answer",
-    "tires": "its ticks come evenly",
-    "follows older commands": "a command that is older than the newest is not followed",
-    "repeats ticks": "each tick comes once",
-    "leaves ticks out": "each tick comes once",
-}
-CONTROLLER = BOTH | {
-    "stamps estimates wrong": "an answer is whole and stamped",
-    "answers a repeat anew": "a repeated tick gets the same answer",
-    "answers twice": "a tick is answered once",
-    "does not count measurements": "a tick whose measurement is missing gets no answer",
-    "goes back in time": "time does not go back",
-    "aims elsewhere": "commands are meant for the robot",
-    "does not ask": "it asks for what it missed",
-    "commands infinity": "commands are finite",
-    "is slow": "it answers within 0.25 s",
-    "says END twice": "it answers END once",
-    "ignores END": "it answers END once",
-    "gives another reason": "it answers END once",
-}
 NOT_ALONE = {
     "it begins when a station is heard",
     "it calls until the robot is heard",
@@ -106,10 +29,12 @@ NOT_ALONE = {
 """A peer that fails one of these can pass no other."""
 
 
-def robot_with(fault: str, key_file: Path | None = None, pace: Pace = "lockstep") -> Report:
+def robot_with(
+    fault: str, key_file: Path | None = None, pace: Pace = "lockstep", waits: Waits = QUICK
+) -> Report:
     kind = Robot if pace == "lockstep" else FreeRunningRobot
     with open_endpoint("udpin://127.0.0.1:0") as endpoint, kind(endpoint, fault, key_file):
-        return conform(endpoint.name.replace("udpin", "udpout"), "robot", key_file, QUICK, pace)
+        return conform(endpoint.name.replace("udpin", "udpout"), "robot", key_file, waits, pace)
 
 
 def controller_with(fault: str, key_file: Path | None = None) -> Report:
@@ -174,6 +99,23 @@ def test_a_broken_controller_fails_its_own_item_alone() -> None:
 
 
 @pytest.mark.slow
+def test_a_robot_with_a_habit_that_breaks_no_rule_conforms() -> None:
+    """Its ticks come many at once; they come seldom while nobody commands it."""
+    test = partial(robot_with, pace="realtime")
+    assert failed_of(test, ["bursts", "dozes"]) == {"bursts": [], "dozes": []}
+
+
+@pytest.mark.slow
+def test_a_robot_behind_a_long_delay_conforms_when_it_is_waited_for() -> None:
+    late = partial(robot_with, "is late", None, "realtime")
+    hurried = late(QUICK._replace(react=0.1))
+
+    assert "an ordinary frame is taken" in hurried.failed
+    assert "within 0.1 s" in hurried.table()
+    assert late(QUICK).failed == []
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("test", [robot_with, controller_with])
 def test_a_trusting_peer_fails_its_own_item_alone(
     test: Callable[[str, Path], Report], tmp_path: Path
@@ -220,6 +162,25 @@ def test_the_report_reads_as_a_table_and_as_junit() -> None:
     assert [case.get("name") for case in suite if case.find("failure") is not None] == [
         "a corrupted frame is refused"
     ]
+
+
+@pytest.mark.parametrize(("fault", "failed"), [("", []), ("never gives up", [GIVES_UP.name])])
+def test_a_robot_with_one_run_is_left_in_silence_instead_of_ended(
+    fault: str, failed: list[str]
+) -> None:
+    with open_endpoint("udpin://127.0.0.1:0") as endpoint, Robot(endpoint, fault, None):
+        url = endpoint.name.replace("udpin", "udpout")
+        report = conform(url, "robot", None, QUICK._replace(react=0.5), silent=True)
+
+    assert report.failed == failed
+    assert [each.name for each in report.results] == [item.name for item in lockstep.SILENT]
+
+
+def test_a_false_start_that_costs_a_frame_is_optional() -> None:
+    report = robot_with("chokes on a false start")
+
+    assert report.failed == ["a false start before a frame costs nothing"]
+    assert report.conforms
 
 
 def test_an_optional_item_does_not_decide() -> None:

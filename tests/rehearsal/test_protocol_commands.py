@@ -131,6 +131,25 @@ def test_a_controller_has_no_pace_to_test(laglab: Laglab) -> None:
     assert "leave --pace out" in result.stderr
 
 
+@pytest.mark.parametrize("options", [("--pace", "realtime"), ("--side", "controller")])
+def test_only_a_robot_in_lock_step_gives_up(laglab: Laglab, options: tuple[str, ...]) -> None:
+    url = "udpin://127.0.0.1:0"
+    result = laglab("conform", url, "--side", "robot", *options, "--silent")
+    assert result.returncode == 2
+    assert "--silent is for a robot in lock-step" in result.stderr
+
+
+def test_the_kit_waits_as_long_as_it_is_told(
+    laglab: Laglab, start: Start, listening_port: ListeningPort
+) -> None:
+    gateway = start("gateway", "fig6", "--silence", "0.5", "--endpoint", "udpin://127.0.0.1:0")
+    url = f"udpout://127.0.0.1:{listening_port(gateway)}"
+    result = laglab("conform", url, "--side", "robot", "--wait", "3", "--silent")
+    assert result.returncode == 0, result.stdout
+    assert "it gives up a silent station" in result.stdout
+    assert laglab("conform", url, "--side", "robot", "--wait", "0").returncode == 2
+
+
 def test_a_ground_station_reads_the_gains_and_the_noise() -> None:
     shown = shown_parameters(Scenario(noise=True))
 

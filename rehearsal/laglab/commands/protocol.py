@@ -11,7 +11,7 @@ from laglab.commands.run import KeyOption
 from laglab.progress import status
 from laglab.results.whole import whole_file
 from laglab.results.writable import file_place, folder_place
-from laglab_conformance import Pace, Side
+from laglab_conformance import Pace, Side, Waits
 from laglab_conformance import conform as test_conformance
 from laglab_protocol import make_key, read_key
 from laglab_protocol.dialect.lint import lint as find_faults
@@ -72,6 +72,21 @@ def conform(
         Pace | None,
         typer.Option(help="Whether a robot waits for each command, or has a clock of its own."),
     ] = None,
+    wait: Annotated[
+        float,
+        typer.Option(
+            metavar="SECONDS",
+            min=0.1,
+            help="How long a reaction may take: longer for a robot behind long delays.",
+        ),
+    ] = Waits().react,
+    silent: Annotated[
+        bool,
+        typer.Option(
+            "--silent",
+            help="Only whether a robot in lock-step gives up a silent station, which ends its run.",
+        ),
+    ] = False,
 ) -> None:
     """Test whether what answers at URL speaks the protocol.
 
@@ -79,6 +94,8 @@ def conform(
     """
     if side == "controller" and pace:
         raise typer.BadParameter("a controller keeps no pace of its own: leave --pace out")
+    if silent and (side == "controller" or pace == "realtime"):
+        raise typer.BadParameter("--silent is for a robot in lock-step, which alone gives up")
     if key:
         read_key(key)
     if junit:
@@ -93,7 +110,9 @@ def conform(
             said = True
             tell(what)
 
-        report = test_conformance(url, side, key, pace=pace or "lockstep", progress=progress)
+        waits = Waits(appear=max(Waits().appear, wait), react=wait)
+        how = pace or "lockstep"
+        report = test_conformance(url, side, key, waits, how, silent, progress)
     print(report.table())
     if junit:
         with whole_file(junit) as file:

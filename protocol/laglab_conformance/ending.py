@@ -1,0 +1,69 @@
+"""The items on how a robot's run ends: by a word, or by silence."""
+
+import time
+
+from laglab_conformance.items import Item
+from laglab_conformance.robot import RobotSession, is_tick
+from laglab_conformance.session import DoesNotApplyError, NoReactionError
+from laglab_protocol.messages.loop import End, EndReason
+
+SILENCE = 3.0
+"""[s] After so much of it a robot in lock-step gives its station up."""
+
+
+def _answers(session: RobotSession) -> str | None:
+    """With the same reason, and then no more ticks."""
+    end = End(session.tick, EndReason.INTERRUPTED)
+    session.send(end)
+    session.over = True
+    answer = session.listen(session.waits.react, lambda frame: isinstance(frame.message, End))
+    if answer is None:
+        return "END is not answered"
+    assert isinstance(answer.message, End)
+    if answer.message.reason != end.reason:
+        return f"END with reason {end.reason} is answered with {answer.message.reason}"
+    session.quiet()
+    return "it goes on after END" if session.listen(session.refusal, is_tick) else None
+
+
+def _ends(session: RobotSession) -> list[End]:
+    """The answers to END, and what else of it came."""
+    ends = [frame.message for frame in session.heard if isinstance(frame.message, End)]
+    if not ends:
+        raise DoesNotApplyError("END is not answered")
+    return ends
+
+
+def _once(session: RobotSession) -> str | None:
+    count = len(_ends(session))
+    return f"it said END {count} times" if count > 1 else None
+
+
+def _at_its_tick(session: RobotSession) -> str | None:
+    """Not before the newest that we have said, which is one that we have heard of it."""
+    wrong = [each.tick for each in _ends(session) if each.tick < session.tick]
+    return f"END at tick {session.tick} is answered with tick {wrong[0]}" if wrong else None
+
+
+def _gives_up(session: RobotSession) -> str | None:
+    """Where END has ended its run, in another one."""
+    try:
+        session.meet(session.waits.react)
+    except NoReactionError as error:
+        raise DoesNotApplyError(
+            "its run is over and no heartbeat begins another: start it again, and say --silent"
+        ) from error
+    began = time.monotonic()
+    while session.listen(session.waits.react / 2, is_tick):
+        silent = time.monotonic() - began
+        if silent > SILENCE + session.waits.react:
+            return f"it still repeats its tick after {silent:.0f} s of silence"
+    return None
+
+
+ENDS = [
+    Item("ticks", "it answers END", _answers),
+    Item("ticks", "it says END once", _once),
+    Item("ticks", "its END names its last tick", _at_its_tick),
+]
+GIVES_UP = Item("lock-step", "it gives up a silent station", _gives_up)

@@ -1,0 +1,90 @@
+"""The items on what a robot tells at each tick: in which order, how much, of which command."""
+
+import math
+from itertools import pairwise
+
+from laglab_conformance.items import Item
+from laglab_conformance.robot import (
+    CREEP,
+    RobotSession,
+    batches,
+    creep,
+    measurements,
+    ticks,
+)
+from laglab_conformance.session import DoesNotApplyError
+from laglab_protocol.messages.loop import NO_COMMAND, Applied, Measurement, Tick
+
+APART = 0.001
+"""[s] What comes less far apart may as well have come in one piece."""
+
+
+def tick_comes_first(session: RobotSession) -> bool:
+    """Whether most measurements come nearer to the tick before them than to the one after them.
+
+    Only a line that is full keeps both as far away.
+    """
+    early = late = 0
+    for since, until in _gaps(session):
+        late += since + APART < until
+        early += until + APART < since
+    return late > early
+
+
+def _gaps(session: RobotSession) -> list[tuple[float, float]]:
+    """Of each measurement, how long after a tick it came, and how long before one [s]."""
+    gaps, last, waiting = [], -math.inf, list[float]()
+    for frame, at in zip(session.heard, session.heard_at, strict=True):
+        if isinstance(frame.message, Measurement | Applied):
+            waiting.append(at)
+        elif isinstance(frame.message, Tick):
+            gaps += [(each - last, at - each) for each in waiting]
+            last, waiting = at, []
+    return gaps
+
+
+def _in_order(session: RobotSession) -> str | None:
+    return "they come after it" if tick_comes_first(session) else None
+
+
+def _counts(session: RobotSession) -> str | None:
+    if tick_comes_first(session):
+        raise DoesNotApplyError("they come after it")
+    for batch, last in batches(session):
+        if len(batch) != last.measurements:
+            return f"{last} came after {len(batch)} of them"
+    return None
+
+
+def _echoes(session: RobotSession) -> str | None:
+    """Each measurement names an earlier command that there was; none moves, but by one before
+    ours; and the one that creeps is named as that."""
+    first = ticks(session)[0].tick
+    stamp = session.tick
+    told = creep(session)
+    if told is not None and told.command_tick != stamp:
+        return f"what command {stamp} commanded is told of command {told.command_tick}"
+    for each in measurements(session):
+        others = NO_COMMAND < each.command_tick < first
+        if not NO_COMMAND <= each.command_tick < max(each.tick, 0):
+            return f"the measurement of tick {each.tick} names command {each.command_tick}"
+        if not (others or each.command_tick in {NO_COMMAND, *session.said}):
+            return f"the measurement of tick {each.tick} names a command that nobody sent"
+        if (abs(each.v) > CREEP or each.omega != 0.0) and not others:
+            return f"the measurement of tick {each.tick} moves, though nobody commanded it"
+    return None
+
+
+def no_earlier(session: RobotSession) -> str | None:
+    """From measurement to measurement the command in force is the same, or a later one."""
+    for before, after in pairwise(measurements(session)):
+        if after.command_tick < before.command_tick:
+            return f"command {after.command_tick} is in force after {before.command_tick}"
+    return None
+
+
+STAMPED = [
+    Item("ticks", "measurements come before their tick", _in_order),
+    Item("ticks", "the tick counts its measurements", _counts),
+    Item("ticks", "measurements tell the command in force", _echoes),
+]
