@@ -6,7 +6,7 @@
 
 #include <laglab/mavlink.h>
 
-enum { ROBOT_SYSTEM = 1, STATION_SYSTEM = 200, DIALECT_VERSION = 2 };
+enum { ROBOT_SYSTEM = 1, STATION_SYSTEM = 200, DIALECT_VERSION = 2, MINUTE = 6000000 };
 #define ROBOT_COMPONENT MAV_COMP_ID_AUTOPILOT1
 #define STATION_COMPONENT MAV_COMP_ID_MISSIONPLANNER
 
@@ -33,11 +33,61 @@ static LinkEvent recall_of(const mavlink_message_t *message) {
     return (LinkEvent){.kind = LINK_RECALL, .first = asked.first, .count = asked.count};
 }
 
+static mavlink_signing_t signing;
+static mavlink_signing_streams_t streams;
+static uint64_t clock_now;
+
+void link_sign(const uint8_t key[KEY_SIZE]) {
+    mavlink_status_t *status = mavlink_get_channel_status(MAVLINK_COMM_0);
+    memcpy(signing.secret_key, key, KEY_SIZE);
+    signing.flags = MAVLINK_SIGNING_FLAG_SIGN_OUTGOING;
+    status->signing = &signing;
+    status->signing_streams = &streams;
+}
+
+void link_clock(uint64_t now) {
+    clock_now = now;
+    if (signing.timestamp < now) {
+        signing.timestamp = now;
+    }
+}
+
+static bool is_signed(const mavlink_message_t *message) {
+    return message->incompat_flags & MAVLINK_IFLAG_SIGNED;
+}
+
+static bool have_key(void) {
+    return mavlink_get_channel_status(MAVLINK_COMM_0)->signing != NULL;
+}
+
+/* What is signed for later than a minute from now would make all new streams too old, for good. */
+static bool is_ahead(const mavlink_message_t *message) {
+    uint64_t timestamp = 0;
+    for (int i = 6; i > 0; i--) {
+        timestamp = timestamp << 8 | message->signature[i];
+    }
+    return timestamp > clock_now + MINUTE;
+}
+
+static LinkEvent refused(const mavlink_message_t *message) {
+    const char *why = "not signed with this key: give both sides the same --key";
+    if (!is_signed(message)) {
+        why = "not signed: give the sender the same --key";
+    } else if (!have_key()) {
+        why = "signed, and there is no key here to tell by whom: give --key here too";
+    } else if (signing.last_status != MAVLINK_SIGNING_STATUS_BAD_SIGNATURE) {
+        why = "signed too early or too late: set the clocks of both sides";
+    }
+    return (LinkEvent){.kind = LINK_REFUSED, .why = why};
+}
+
 static LinkEvent event_of(const mavlink_message_t *message) {
     const LinkEvent nothing = {.kind = LINK_NOTHING};
-    const bool modern = message->magic == MAVLINK_STX && !(message->incompat_flags & MAVLINK_IFLAG_SIGNED);
-    if (!modern || message->sysid != STATION_SYSTEM || message->compid != STATION_COMPONENT) {
-        return nothing; /* what is signed would need the key */
+    if (message->magic != MAVLINK_STX || message->sysid != STATION_SYSTEM || message->compid != STATION_COMPONENT) {
+        return nothing;
+    }
+    if (is_signed(message) && !have_key()) {
+        return refused(message);
     }
     switch (message->msgid) {
     case MAVLINK_MSG_ID_HEARTBEAT:
@@ -78,20 +128,49 @@ void link_take(uint8_t byte) {
     held[holding++] = byte;
 }
 
+void link_give_up(void) {
+    if (holding > 0) {
+        mavlink_reset_channel_status(MAVLINK_COMM_0);
+        drop(1);
+    }
+}
+
+/* What has been said before, as it was before the frame that is being shown to the parser. */
+static uint64_t timestamp_before;
+static mavlink_signing_streams_t streams_before;
+
+static uint8_t show_next(mavlink_message_t *message, mavlink_status_t *status) {
+    if (shown == 0) {
+        timestamp_before = signing.timestamp;
+        streams_before = streams;
+    }
+    const uint8_t found = mavlink_frame_char(MAVLINK_COMM_0, held[shown++], message, status);
+    if (found == MAVLINK_FRAMING_OK && have_key() && is_ahead(message)) {
+        signing.timestamp = timestamp_before;
+        streams = streams_before;
+        return MAVLINK_FRAMING_BAD_SIGNATURE;
+    }
+    return found;
+}
+
 LinkEvent link_next(void) {
     mavlink_message_t message;
     mavlink_status_t status;
     while (shown < holding) {
-        const uint8_t found = mavlink_frame_char(MAVLINK_COMM_0, held[shown++], &message, &status);
+        LinkEvent event = {.kind = LINK_NOTHING};
+        const uint8_t found = show_next(&message, &status);
         if (found == MAVLINK_FRAMING_OK) {
             drop(shown);
-            const LinkEvent event = event_of(&message);
-            if (event.kind != LINK_NOTHING) {
-                return event;
-            }
+            event = event_of(&message);
         } else if (found != MAVLINK_FRAMING_INCOMPLETE || status.parse_state == MAVLINK_PARSE_STATE_IDLE) {
             mavlink_reset_channel_status(MAVLINK_COMM_0);
             drop(1);
+            if (found == MAVLINK_FRAMING_BAD_SIGNATURE) {
+                event = refused(&message);
+            }
+        }
+        if (event.kind != LINK_NOTHING) {
+            return event;
         }
     }
     return (LinkEvent){.kind = LINK_NOTHING};

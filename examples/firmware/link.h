@@ -7,22 +7,33 @@
 
 #include "body.h"
 #include "drive.h"
+#include "key.h"
 #include "memory.h"
 
 #define LINK_LARGEST 280 /* bytes that link_write_* write at most */
 
 /* What a station can ask of the robot. */
 typedef struct {
-    enum { LINK_NOTHING, LINK_BEGIN, LINK_SETTINGS, LINK_COMMAND, LINK_REQUEST, LINK_RECALL, LINK_END } kind;
+    enum { LINK_NOTHING, LINK_REFUSED, LINK_BEGIN, LINK_SETTINGS, LINK_COMMAND, LINK_REQUEST, LINK_RECALL, LINK_END } kind;
     Command command;
     uint16_t request; /* a MAV_CMD */
     uint32_t first;   /* the first tick to recall */
     uint16_t count;   /* ticks to recall */
     uint8_t reason;   /* of an end */
+    const char *why;  /* a frame was refused for its signature */
 } LinkEvent;
+
+/* From now on sign all that is written, and take nothing that is not signed with this key. */
+void link_sign(const uint8_t key[KEY_SIZE]);
+
+/* What the time is now, as key_time has it: nothing is signed as if it were earlier. */
+void link_clock(uint64_t now);
 
 /* Take one byte, after link_next has given LINK_NOTHING. */
 void link_take(uint8_t byte);
+
+/* No byte has come for longer than a pause within a frame: what has begun will not be completed. */
+void link_give_up(void);
 
 /* What the bytes taken so far complete, one by one, then LINK_NOTHING. */
 LinkEvent link_next(void);

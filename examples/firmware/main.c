@@ -1,4 +1,5 @@
-/* A small robot on a serial port: `firmware [--speed F] DEVICE`. Its clock runs F times as fast as the wall's.
+/* A small robot on a serial port: `firmware [--speed F] [--key FILE] DEVICE`. Its clock runs F times as fast as the
+ * wall's; with a key it signs what it says, and hears nothing that is not signed.
  *
  * It waits for a heartbeat, then ticks from 0 on, every SAMPLE_TIME of its own clock, until it is told to end. What
  * has been received by a tick comes into force at that tick. */
@@ -16,11 +17,18 @@
 
 #include "body.h"
 #include "drive.h"
+#include "key.h"
 #include "link.h"
 #include "memory.h"
 
+static const double PAUSE = 0.05; /* s; bytes of one frame come sooner after each other */
+
 typedef struct {
+    const char *device;
     int port;
+    double wakes;     /* every so many seconds */
+    double silent;    /* s since the last byte */
+    const char *told; /* why frames were refused last */
     bool running;
     uint32_t tick;
     Body body;
@@ -62,6 +70,12 @@ static void owe(Robot *robot, uint32_t first, uint32_t count) {
 static bool obey(Robot *robot, LinkEvent event) {
     uint8_t buffer[LINK_LARGEST];
     switch (event.kind) {
+    case LINK_REFUSED:
+        if (event.why != robot->told) {
+            robot->told = event.why;
+            fprintf(stderr, "%s: frames refused: %s\n", robot->device, event.why);
+        }
+        return true;
     case LINK_REQUEST:
         return send(robot, buffer, link_write_refusal(buffer, event.request));
     case LINK_SETTINGS:
@@ -91,22 +105,36 @@ static bool obey(Robot *robot, LinkEvent event) {
     }
 }
 
+static bool obey_all(Robot *robot) {
+    LinkEvent event;
+    while ((event = link_next()).kind != LINK_NOTHING) {
+        if (!obey(robot, event)) {
+            return false;
+        }
+    }
+    return true;
+}
+
 /* All that has arrived; false when the far end is gone. */
 static bool receive(Robot *robot) {
     uint8_t data[256];
     ssize_t size;
+    robot->silent += robot->wakes;
     while ((size = read(robot->port, data, sizeof data)) > 0) {
+        robot->silent = 0;
         for (ssize_t i = 0; i < size; i++) {
-            LinkEvent event;
             link_take(data[i]);
-            while ((event = link_next()).kind != LINK_NOTHING) {
-                if (!obey(robot, event)) {
-                    return false;
-                }
+            if (!obey_all(robot)) {
+                return false;
             }
         }
     }
-    return size < 0 && errno == EAGAIN;
+    const bool there = size < 0 && errno == EAGAIN;
+    if (robot->silent > PAUSE) {
+        link_give_up();
+        return obey_all(robot) && there;
+    }
+    return there;
 }
 
 /* Some of what the station asked for: so many frames with each tick that the line has room for them. */
@@ -143,28 +171,61 @@ static void sleep_on(struct timespec *deadline, double seconds) {
     }
 }
 
-static void run(Robot *robot, double speed) {
+static void run(Robot *robot) {
     struct timespec deadline;
     clock_gettime(CLOCK_MONOTONIC, &deadline);
+    link_clock(key_time());
     while (receive(robot) && (!robot->running || tick(robot))) {
-        sleep_on(&deadline, SAMPLE_TIME / speed);
+        sleep_on(&deadline, robot->wakes);
+        link_clock(key_time());
     }
 }
 
+typedef struct {
+    double speed;
+    const char *key, *device;
+} Options;
+
+/* False when they are not as they must be. */
+static bool read_options(int argc, char **argv, Options *options) {
+    *options = (Options){.speed = 1.0};
+    int i = 1;
+    for (; i + 2 < argc; i += 2) {
+        if (strcmp(argv[i], "--speed") == 0) {
+            options->speed = atof(argv[i + 1]);
+        } else if (strcmp(argv[i], "--key") == 0) {
+            options->key = argv[i + 1];
+        } else {
+            return false;
+        }
+    }
+    options->device = argv[argc - 1];
+    return i + 1 == argc && options->speed > 0 && options->speed <= 100;
+}
+
 int main(int argc, char **argv) {
-    const bool faster = argc == 4 && strcmp(argv[1], "--speed") == 0;
-    const double speed = faster ? atof(argv[2]) : 1.0;
-    const char *device = argv[argc - 1];
-    if ((argc != 2 && !faster) || !(speed > 0 && speed <= 100)) {
-        fprintf(stderr, "usage: %s [--speed F] DEVICE, with F up to 100\n", argv[0]);
+    Options options;
+    if (!read_options(argc, argv, &options)) {
+        fprintf(stderr, "usage: %s [--speed F] [--key FILE] DEVICE, with F up to 100\n", argv[0]);
         return 2;
     }
-    Robot robot = {.port = open_port(device), .body = body_start(), .drive = drive_start()};
+    if (options.key) {
+        uint8_t key[KEY_SIZE];
+        const char *wrong = key_read(options.key, key);
+        if (wrong) {
+            fprintf(stderr, "%s: %s\n", options.key, wrong);
+            return 2;
+        }
+        link_sign(key);
+    }
+    const char *device = options.device;
+    Robot robot = {.device = device, .port = open_port(device), .body = body_start(), .drive = drive_start()};
+    robot.wakes = SAMPLE_TIME / options.speed;
     if (robot.port < 0) {
         fprintf(stderr, "%s: cannot open it as a serial port: %s\n", device, strerror(errno));
         return 1;
     }
-    run(&robot, speed);
+    run(&robot);
     fprintf(stderr, "%s: the far end is gone\n", device);
     return 1;
 }

@@ -27,7 +27,7 @@ class PlantSilentError(GatewayError):
         since = "never spoke" if tick is None else f"has been silent since its tick {tick}"
         super().__init__(
             f"{link}: the robot {since} ({seconds:.1f} s): is it switched on, on this link, and "
-            "speaks it the laglab dialect at this baud?"
+            "speaks it the laglab dialect at this baud, signed with the key of --plant-key, or not?"
         )
 
 

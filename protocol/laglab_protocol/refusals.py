@@ -11,22 +11,23 @@ ENOUGH = 5
 """So many frames: a single one may have been overtaken on its way."""
 
 MENDED = {
-    Refusal.UNSIGNED: "not signed: give the sender the same --key",
-    Refusal.BAD_SIGNATURE: "not signed with this key: give both sides the same --key",
-    Refusal.NO_KEY: "signed, and there is no key here to tell by whom: give --key here too",
+    Refusal.UNSIGNED: "not signed: give the sender the same {key}",
+    Refusal.BAD_SIGNATURE: "not signed with this key: give both sides the same {key}",
+    Refusal.NO_KEY: "signed, and there is no key here to tell by whom: give {key} here too",
     Refusal.REPLAYED: "signed no later than what was said before, or over a minute ago: set the "
     "clock there, and let no two senders share a link id",
     Refusal.AHEAD: "signed over a minute ahead of the clock here: set the clocks of both "
     "machines; where they are right now, make a new key",
 }
-"""By reason: these are about keys and clocks, and people can mend them."""
+"""By reason: these are about keys and clocks, and people can mend them. `key`: by this option."""
 
 
 class Refusals:
     """Says of each link and reason, once, that frames are refused, and how to mend it."""
 
-    def __init__(self, now: float) -> None:
-        """At `now` [s] there is nothing to be told yet."""
+    def __init__(self, now: float, option: str = "--key") -> None:
+        """At `now` [s] there is nothing to be told yet; `option` is where our key is given."""
+        self._option = option
         self._told: set[tuple[str, Refusal]] = set()
         self._next = now + PERIOD
 
@@ -40,4 +41,5 @@ class Refusals:
                 told = listener.link.name, reason
                 if count >= ENOUGH and reason in MENDED and told not in self._told:
                     self._told.add(told)
-                    yield f"{listener.link.name}: frames refused: {MENDED[reason]}"
+                    mended = MENDED[reason].format(key=self._option)
+                    yield f"{listener.link.name}: frames refused: {mended}"

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import pytest
 from msgspec.structs import replace
 
-from laglab_conformance import conform
+from laglab_conformance import Mark, conform
 from laglab_protocol import (
     NO_COMMAND,
     ROBOT_COMPONENT,
@@ -30,8 +30,11 @@ from laglab_protocol import (
     Receiver,
     Sender,
     Tick,
+    make_key,
     open_endpoint,
+    read_key,
 )
+from laglab_protocol.signing.signature import MINUTE, Signer, Verifier, signing_time
 
 SPEED = 4.0
 PERIOD = 0.01 / SPEED
@@ -92,18 +95,22 @@ def line(start: Callable[..., Any], firmware: Path, tmp_path: Path) -> Iterator[
 
 
 @pytest.mark.slow
-def test_it_conforms_on_a_line_at_the_pace_of_a_real_one(
+def test_it_conforms_signed_on_a_line_at_the_pace_of_a_real_one(
     start: Callable[..., Any], firmware: Path, tmp_path: Path
 ) -> None:
     """Where frames come in pieces; mavgen's parser alone would pass over what follows a false
     start."""
+    make_key(tmp_path / "key")
     ports = [tmp_path / "robot", tmp_path / "station"]
     cable = start(sys.executable, "-m", "laglab", "serial", *ports, "--baud", "115200")
     assert "are joined" in cable.stderr.readline()
-    start(firmware, ports[0])
-    report = conform(f"serial://{ports[1]}:115200", "robot", pace="realtime")
+    start(firmware, "--key", tmp_path / "key", ports[0])
+    url, key = f"serial://{ports[1]}:115200", tmp_path / "key"
+    report = conform(url, "robot", key, pace="realtime")
 
     assert report.conforms, report.table()
+    tried = {each.name: each.mark for each in report.results if each.group == "signing"}
+    assert set(tried.values()) == {Mark.PASSED}
 
 
 @pytest.mark.slow
@@ -209,6 +216,26 @@ def test_nobody_but_the_station_commands_it(line: Line) -> None:
     stranger = line._replace(sender=Sender(7, STATION_COMPONENT))
     stranger.say(command(5, 1.0), End(0, EndReason.COMPLETED))
     assert {sample.command_tick for sample in line.samples(20)} == {NO_COMMAND}
+
+
+def test_who_signs_far_ahead_of_its_clock_is_refused_and_locks_nobody_out(
+    start: Callable[..., Any], firmware: Path, tmp_path: Path
+) -> None:
+    make_key(tmp_path / "key")
+    key, stream = read_key(tmp_path / "key"), (0, STATION_SYSTEM, STATION_COMPONENT)
+    ahead = Signer(key, stream, clock=lambda: signing_time() + 2 * MINUTE)
+    with open_endpoint(f"pty://{tmp_path}/port") as endpoint:
+        robot = start(firmware, "--key", tmp_path / "key", tmp_path / "port")
+        receiver = Receiver(Verifier(key))
+        early = Line(endpoint, Sender(STATION_SYSTEM, STATION_COMPONENT, ahead), receiver)
+        heard: list[Message] = []
+        for _ in range(20):
+            early.say(HEARTBEAT)
+            heard += early.hear(0.02)
+        assert heard == []
+        signer = Signer(key, stream)
+        begin(early._replace(sender=Sender(STATION_SYSTEM, STATION_COMPONENT, signer)))
+    assert "set the clocks of both sides" in robot.stderr.readline()
 
 
 def test_without_fresh_commands_it_ramps_to_a_stop_and_goes_on_with_the_next(line: Line) -> None:

@@ -249,7 +249,7 @@ def test_a_robot_that_never_speaks_is_named(tmp_path: Path) -> None:
         patience = Patience(silence=0.9)
         around = Surroundings(Listener(endpoint, Receiver()), patience=patience)
         with pytest.raises(PlantSilentError, match="the robot never spoke") as silent:
-            serve_remote(relay, robot, around)
+            serve_remote(relay, Listener(robot, Receiver()), around)
         assert link in str(silent.value)
         heard = Receiver().receive(station.receive(0.1))
         assert End(0, EndReason.FAILED) in [frame.message for frame in heard]

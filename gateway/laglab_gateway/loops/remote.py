@@ -11,12 +11,11 @@ from laglab_gateway.loops.surroundings import Patience, Served, Surroundings
 from laglab_gateway.relay import Relay
 from laglab_gateway.speakers import from_robot
 from laglab_protocol import (
-    Endpoint,
     EndpointError,
     EndReason,
     Frame,
     Listener,
-    Receiver,
+    Refusals,
     differences,
     refuse_other_sample_time,
 )
@@ -28,11 +27,12 @@ GREETED_AGAIN = 0.3
 class RobotLine:
     """The relay's talk with the robot over one endpoint."""
 
-    def __init__(self, relay: Relay, endpoint: Endpoint, patience: Patience) -> None:
+    def __init__(self, relay: Relay, listener: Listener, patience: Patience) -> None:
         self._relay = relay
-        self._endpoint = endpoint
+        self._link = listener.link
         self._patience = patience
-        self._listener = Listener(endpoint, Receiver())
+        self._listener = listener
+        self._refusals = Refusals(monotonic(), "--plant-key")
         self._heard = self._greeted = monotonic()
 
     @contextmanager
@@ -58,7 +58,7 @@ class RobotLine:
     def greet(self) -> None:
         """Make a robot begin that does not tick yet."""
         self._greeted = monotonic()
-        self._endpoint.send(self._relay.greeting())
+        self._link.send(self._relay.greeting())
 
     def greet_if_silent(self) -> None:
         """As long as it does not tick, now and then."""
@@ -75,7 +75,7 @@ class RobotLine:
     def _listen(self, timeout: float) -> list[Frame]:
         frames = [frame for frame in self._listener.listen(timeout) if from_robot(frame)]
         if frames:
-            self._endpoint.accept_peer()
+            self._link.accept_peer()
         return frames
 
     def check_silence(self) -> None:
@@ -83,7 +83,11 @@ class RobotLine:
         silence = monotonic() - self._heard
         if silence > self._patience.robot_silence:
             since = self._relay.tick if self._relay.under_way else None
-            raise PlantSilentError(self._endpoint.name, since, silence)
+            raise PlantSilentError(self._link.name, since, silence)
+
+    def refusals(self) -> Iterator[str]:
+        """Now and then: why frames of the robot are not taken, and how to mend that."""
+        return self._refusals.news([self._listener], monotonic())
 
     def compare_settings(self) -> str:
         """What the robot was told differently. Raises SettingsError when it ticks at another
@@ -98,13 +102,13 @@ class RobotLine:
     def forward(self) -> None:
         """Send what the robot is to have now."""
         if frames := self._relay.forward():
-            self._endpoint.send(b"".join(frames))
+            self._link.send(b"".join(frames))
 
     def _say_goodbye(self, reason: EndReason) -> None:
         """Stop the robot, and give it a few chances to say that it heard."""
         reason = self._relay.stop(reason).reason
         for _ in range(END_TRIES):
-            self._endpoint.send(self._relay.end_of_robot(reason))
+            self._link.send(self._relay.end_of_robot(reason))
             if self._relay.robot_end is None:
                 self._hear_the_last()
             if self._relay.robot_end is not None:
@@ -117,7 +121,7 @@ class RobotLine:
                 self._relay.hear_robot(frame)
 
 
-def serve_remote(relay: Relay, robot: Endpoint, around: Surroundings) -> Served:
+def serve_remote(relay: Relay, robot: Listener, around: Surroundings) -> Served:
     """Relay between robot and station to the run's last tick.
 
     However it ends, both sides are told, the robot first.
@@ -136,13 +140,15 @@ def serve_remote(relay: Relay, robot: Endpoint, around: Surroundings) -> Served:
         conversation.wait_for_station()
         line.start()
         while relay.outcome is None:
-            ready, _, _ = select([robot, station], [], [], around.patience.repeat_after)
+            ready, _, _ = select([robot.link, station], [], [], around.patience.repeat_after)
             if station in ready:
                 conversation.listen(0.0)
-            if robot in ready:
+            if robot.link in ready:
                 _relay_ticks(relay, line, conversation, around)
             line.greet_if_silent()
             line.forward()
+            for said in line.refusals():
+                around.warn(said)
             line.check_silence()
     timesync = relay.services.timesync
     link = relay.audit.report(timesync.report() if timesync else None)

@@ -157,10 +157,16 @@ class Codec:
         self.close()
 
 
-def refuse_open_door(endpoint: Endpoint, key_file: Path | None, unsigned_allowed: bool) -> None:
-    """Raise UnsignedLinkError when strangers can reach `endpoint` and no key keeps them out."""
+def refuse_open_door(
+    endpoint: Endpoint, key_file: Path | None, unsigned_allowed: bool, option: str = "--key"
+) -> None:
+    """Raise UnsignedLinkError when strangers can reach `endpoint` and no key keeps them out.
+
+    `option` is where that key is given.
+    """
     if not (endpoint.loopback or key_file or unsigned_allowed):
         raise UnsignedLinkError(
             f"{endpoint.name} can be reached from outside, and without a key anybody there can "
-            "move the robot: give --key FILE (laglab protocol keygen makes one), or say --unsigned"
+            f"move the robot: give {option} FILE (laglab protocol keygen makes one), or say "
+            "--unsigned"
         )

@@ -28,6 +28,12 @@ PlantOption = Annotated[
         help="The real robot's link, such as serial:///dev/ttyX:BAUD: its clock sets the pace.",
     ),
 ]
+PlantKeyOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--plant-key", metavar="FILE", help="Sign every frame on the real robot's link, too."
+    ),
+]
 OutOption = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Where the results go; runs/SCENARIO otherwise."),
@@ -47,6 +53,7 @@ def run(
     force: ForceOption = False,
     key: KeyOption = None,
     plant: PlantOption = None,
+    plant_key: PlantKeyOption = None,
 ) -> None:
     """Rehearse SCENARIO: robot, delayed link and controller.
 
@@ -55,7 +62,7 @@ def run(
     require(REHEARSING)
     if plant is not None and transport == "inline":
         raise ScenarioError("--plant: a real robot does not wait: take --transport udp or serial")
-    setup = Setup(plant, key)
+    setup = Setup(plant, key, plant_key=plant_key)
     setup.check()
     directory = place(scenario, out, force)
     with progress_of(scenario) as told:

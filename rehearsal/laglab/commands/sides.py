@@ -8,7 +8,7 @@ import typer
 from rich.console import Console
 
 from laglab.commands.options import on_scenario
-from laglab.commands.run import ForceOption, KeyOption, OutOption, PlantOption
+from laglab.commands.run import ForceOption, KeyOption, OutOption, PlantKeyOption, PlantOption
 from laglab.commands.verdict import conclude
 from laglab.extras import STEPPING, require
 from laglab.progress import progress_of
@@ -66,6 +66,7 @@ def gateway(
     out: OutOption = None,
     force: ForceOption = False,
     plant: PlantOption = None,
+    plant_key: PlantKeyOption = None,
     key: KeyOption = None,
     unsigned: UnsignedOption = False,
     disarmed: Annotated[
@@ -76,7 +77,7 @@ def gateway(
     if plant is None:
         require(STEPPING)
     with (
-        open_robot(scenario, Setup(plant, key, not disarmed, unsigned)) as robot,
+        open_robot(scenario, Setup(plant, key, not disarmed, unsigned, plant_key)) as robot,
         open_endpoint(endpoint) as link,
         _opened(watch or []) as watched,
     ):

@@ -93,9 +93,9 @@ def rehearse_apart(
     Ctrl-C ends both in order; the outcome says so.
     """
     setup = setup or Setup()
-    key = None if setup.key is None else str(setup.key)
+    key, plant_key = (None if each is None else str(each) for each in (setup.key, setup.plant_key))
     with _gateway_url(transport) as url:
-        order = Order(scenario.to_toml(), url, str(directory), setup.plant, key)
+        order = Order(scenario.to_toml(), url, str(directory), setup.plant, key, plant_key)
         inbox: Inbox = Queue()
         with started("gateway", "laglab.runs.sides:robot_side", order, inbox) as gateway:
             return _Rehearsal(gateway, inbox, scenario, key, progress).follow()

@@ -18,6 +18,7 @@ class Order(Struct, frozen=True):
     """Where the robot's side keeps its record."""
     plant: str | None = None
     key: str | None = None
+    plant_key: str | None = None
 
 
 class Listening(Struct, frozen=True, tag=True):

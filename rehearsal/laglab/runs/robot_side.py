@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 import laglab_fmu
+from laglab.errors import ScenarioError
 from laglab.runs.hand import MovedByHand
 from laglab.runs.plant import FmuPlant
 from laglab.scenario import Scenario
@@ -42,8 +43,11 @@ from laglab_protocol import (
     EVERY_MESSAGE,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
+    STATION_COMPONENT,
+    STATION_SYSTEM,
     Codec,
     Endpoint,
+    KeyFileError,
     Listener,
     Sender,
     open_endpoint,
@@ -63,13 +67,24 @@ class Setup:
     armed: bool = True
     """Whether the robot may move before a ground station says so."""
     unsigned: bool = False
-    """Whether strangers may reach the real robot's own link, which is never signed, and those
-    who watch need no key."""
+    """Whether strangers may reach the real robot's own link without its key, and those who watch
+    need no key."""
+    plant_key: Path | None = None
+    """The file of the key that signs every frame on the real robot's own link."""
 
     def check(self) -> None:
-        """What can be known to be wrong before anything runs. Raises KeyFileError."""
-        if self.key is not None:
-            read_key(self.key)
+        """What can be known to be wrong before anything runs.
+
+        Raises KeyFileError, and ScenarioError for a key of nothing.
+        """
+        keys = [read_key(each) for each in (self.key, self.plant_key) if each is not None]
+        if self.plant_key is not None and self.plant is None:
+            raise ScenarioError("--plant-key: without --plant there is no robot's link to sign")
+        if len(keys) > len(set(keys)):
+            raise KeyFileError(
+                f"{self.plant_key} is the key of the station's link: what is said there could be "
+                "played to the robot: make its link another one (laglab protocol keygen)"
+            )
 
 
 def robot_parameters(scenario: Scenario) -> laglab_fmu.RobotParameters:
@@ -189,6 +204,7 @@ class OpenRobot:
 @contextmanager
 def open_robot(scenario: Scenario, setup: Setup) -> Iterator[OpenRobot]:
     """The robot's side: the FMU, or the real robot."""
+    setup.check()
     with Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, setup.key) as codec:
         if setup.plant is None:
             with open_gateway(scenario, codec.sender, setup.armed) as gateway:
@@ -202,10 +218,13 @@ def open_robot(scenario: Scenario, setup: Setup) -> Iterator[OpenRobot]:
                     f"plant.event: {setup.plant} is a real robot, which nobody can move from here: "
                     "leave the events out"
                 )
-            with open_endpoint(setup.plant) as robot:
-                refuse_open_door(robot, None, setup.unsigned)
-                relay = _relay(scenario, codec.sender, setup.armed)
-                serve = partial(serve_remote, relay, robot)
+            with (
+                Codec(STATION_SYSTEM, STATION_COMPONENT, setup.plant_key) as line,
+                open_endpoint(setup.plant) as robot,
+            ):
+                refuse_open_door(robot, setup.plant_key, setup.unsigned, "--plant-key")
+                relay = _relay(scenario, codec.sender, line.sender, setup.armed)
+                serve = partial(serve_remote, relay, Listener(robot, line.receiver))
                 yield OpenRobot(relay.services, codec, serve, setup.unsigned, setup.key is not None)
 
 
@@ -216,7 +235,7 @@ def _serve_simulated(scenario: Scenario, gateway: Gateway, around: Surroundings)
     return serve_realtime(gateway, around, scenario.sample_time / scenario.speed)
 
 
-def _relay(scenario: Scenario, sender: Sender, armed: bool) -> Relay:
+def _relay(scenario: Scenario, sender: Sender, to_robot: Sender, armed: bool) -> Relay:
     """The link in front of a real robot, at its own pace."""
     services = robot_services(scenario, free_running=True, placeable=False, armed=armed)
-    return Relay(gateway_config(scenario), services, link_fates(scenario), sender)
+    return Relay(gateway_config(scenario), services, link_fates(scenario), sender, to_robot)

@@ -34,7 +34,7 @@ def robot_side(order: Order, tell: Tell) -> None:
     begun = False
     try:
         with (
-            open_robot(scenario, Setup(order.plant, _path(order.key))) as robot,
+            open_robot(scenario, _setup(order)) as robot,
             closing(FileRecorder(Path(order.directory))) as recorder,
             open_endpoint(order.url) as endpoint,
             short_pauses(),
@@ -72,6 +72,10 @@ def station_side(order: Order, tell: Tell) -> None:
         tell(Answered(station.report()))
     except SIDE_ERRORS as error:
         tell(Failed(str(error), begun or isinstance(error, LINK_LOST)))
+
+
+def _setup(order: Order) -> Setup:
+    return Setup(order.plant, _path(order.key), plant_key=_path(order.plant_key))
 
 
 def _path(name: str | None) -> Path | None:
