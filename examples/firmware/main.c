@@ -26,9 +26,9 @@ static const double PAUSE = 0.05; /* s; bytes of one frame come sooner after eac
 typedef struct {
     const char *device;
     int port;
-    double wakes;     /* every so many seconds */
-    double silent;    /* s since the last byte */
-    const char *told; /* why frames were refused last */
+    double wakes;        /* every so many seconds */
+    double silent;       /* s since the last byte */
+    const char *told[4]; /* why frames were refused */
     bool running;
     uint32_t tick;
     Body body;
@@ -67,14 +67,23 @@ static void owe(Robot *robot, uint32_t first, uint32_t count) {
     robot->owed = (uint16_t)(end - first < MEMORY_TICKS ? end - first : MEMORY_TICKS);
 }
 
+/* Each reason once. */
+static void tell(Robot *robot, const char *why) {
+    size_t i = 0;
+    while (i < sizeof robot->told / sizeof *robot->told - 1 && robot->told[i] && robot->told[i] != why) {
+        i++;
+    }
+    if (robot->told[i] != why) {
+        robot->told[i] = why;
+        fprintf(stderr, "%s: frames refused: %s\n", robot->device, why);
+    }
+}
+
 static bool obey(Robot *robot, LinkEvent event) {
     uint8_t buffer[LINK_LARGEST];
     switch (event.kind) {
     case LINK_REFUSED:
-        if (event.why != robot->told) {
-            robot->told = event.why;
-            fprintf(stderr, "%s: frames refused: %s\n", robot->device, event.why);
-        }
+        tell(robot, event.why);
         return true;
     case LINK_REQUEST:
         return send(robot, buffer, link_write_refusal(buffer, event.request));

@@ -1,0 +1,45 @@
+"""The robot in examples/, which was written by the page and with pymavlink alone, conforms."""
+
+import ast
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from laglab_conformance import Waits, conform
+from laglab_protocol import open_endpoint
+
+ROBOT = Path(__file__).parents[2] / "examples" / "pymavlink_robot.py"
+MISSED = {
+    "a false start before a frame costs nothing",
+    "it tells its settings",
+    "it recalls what was in force",
+    "it reports Heartbeat on request",
+    "it reports AutopilotVersion on request",
+    "it lists its parameters",
+    "it reads a parameter by index and name",
+    "it answers a ping",
+}
+"""What it does without, all optional: the first is its parser's fault."""
+
+
+@pytest.mark.slow
+def test_it_conforms(start_program: Callable[..., Any]) -> None:
+    with open_endpoint("udpin://127.0.0.1:0") as free:
+        url = free.name.replace("udpin", "udpout")
+    start_program(sys.executable, ROBOT, url.rpartition(":")[2])
+    report = conform(url, "robot", waits=Waits(appear=10.0, react=1.0, refuse=0.2))
+
+    assert report.conforms, report.table()
+    assert set(report.failed) == MISSED
+
+
+def test_it_knows_nothing_of_laglab_but_the_generated_file() -> None:
+    names = [
+        node.module
+        for node in ast.walk(ast.parse(ROBOT.read_text()))
+        if isinstance(node, ast.ImportFrom) and "laglab" in str(node.module)
+    ]
+    assert names == ["laglab_protocol.dialect.generated"]
