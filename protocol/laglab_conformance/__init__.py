@@ -5,15 +5,21 @@ from pathlib import Path
 from typing import Literal
 
 from laglab_conformance import controller, freerunning, lockstep
-from laglab_conformance.items import carry_out
+from laglab_conformance.items import Item, carry_out
 from laglab_conformance.report import Mark, Report, Result
 from laglab_conformance.session import Waits
 from laglab_protocol.endpoints import open_endpoint
 
-__all__ = ["Mark", "Pace", "Report", "Result", "Waits", "conform"]
+__all__ = ["Mark", "Pace", "Report", "Result", "Scope", "Side", "Waits", "conform"]
 
 Side = Literal["robot", "controller"]
 Pace = Literal["lockstep", "realtime"]
+Scope = Literal["all", "silence", "reading"]
+SCOPES: dict[Scope, list[Item[lockstep.LockstepSession]]] = {
+    "all": lockstep.ITEMS,
+    "silence": lockstep.SILENCE,
+    "reading": lockstep.READING,
+}
 
 
 def conform(
@@ -22,22 +28,22 @@ def conform(
     key_file: Path | None = None,
     waits: Waits | None = None,
     pace: Pace = "lockstep",
-    silent: bool = False,
+    scope: Scope = "all",
     progress: Callable[[str], None] = lambda _: None,
 ) -> Report:
     """Test the robot, or the controller, that answers at `url`; its run is over afterwards.
 
     A robot is told to stand still throughout; `pace` says whether it waits for each command or has
-    a clock of its own; `silent`: only whether it gives a silent station up. `progress` is told what
-    is tried. Raises the EndpointError and KeyFileError trees.
+    a clock of its own; `scope`, of one in lock-step, whether all is tried, or only whether it gives
+    up a silent station, or only how it reads frames; `progress` is told what is tried. Raises the
+    EndpointError and KeyFileError trees.
     """
     with open_endpoint(url) as endpoint:
         talk = endpoint, waits or Waits(), key_file
         if side == "controller":
             results = carry_out(controller.ITEMS, controller.ControllerSession(*talk), progress)
         elif pace == "lockstep":
-            items = lockstep.SILENT if silent else lockstep.ITEMS
-            results = carry_out(items, lockstep.LockstepSession(*talk), progress)
+            results = carry_out(SCOPES[scope], lockstep.LockstepSession(*talk), progress)
         else:
             results = carry_out(freerunning.ITEMS, freerunning.FreeRunningSession(*talk), progress)
     return Report(side, results)

@@ -111,5 +111,7 @@ ITEMS: list[Item[LockstepSession]] = [
     *ENDS,
     GIVES_UP,
 ]
-SILENT: list[Item[LockstepSession]] = [BEGINS, GIVES_UP]
+SILENCE: list[Item[LockstepSession]] = [BEGINS, GIVES_UP]
 """For a robot that has but one run, which END would end."""
+READING: list[Item[LockstepSession]] = [BEGINS, *RECEIVING, *ENDS]
+"""What hinges on how it reads frames."""

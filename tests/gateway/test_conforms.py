@@ -91,7 +91,7 @@ def test_our_robot_gives_up_a_silent_station(stack: ExitStack) -> None:
     endpoint = stack.enter_context(open_endpoint("udpin://:0"))
     url = endpoint.name.replace("udpin", "udpout")
     robot = stack.enter_context(ThreadPoolExecutor(1)).submit(serve, endpoint, None, "lockstep")
-    report = conform(url, "robot", None, Quick(3.0, 1.0, 0.1), silent=True)
+    report = conform(url, "robot", None, Quick(3.0, 1.0, 0.1), scope="silence")
 
     assert report.failed == [], report.table()
     with pytest.raises(StationSilentError):

@@ -170,10 +170,10 @@ def test_a_robot_with_one_run_is_left_in_silence_instead_of_ended(
 ) -> None:
     with open_endpoint("udpin://127.0.0.1:0") as endpoint, Robot(endpoint, fault, None):
         url = endpoint.name.replace("udpin", "udpout")
-        report = conform(url, "robot", None, QUICK._replace(react=0.5), silent=True)
+        report = conform(url, "robot", None, QUICK._replace(react=0.5), scope="silence")
 
     assert report.failed == failed
-    assert [each.name for each in report.results] == [item.name for item in lockstep.SILENT]
+    assert [each.name for each in report.results] == [item.name for item in lockstep.SILENCE]
 
 
 def test_a_false_start_that_costs_a_frame_is_optional() -> None:

@@ -17,9 +17,9 @@ def new_folder(stack: ExitStack) -> Path:
 
 
 def c_library(
-    source: str, beside: Mapping[str, bytes], stack: ExitStack, headers: Path | None = None
+    source: Path, beside: Mapping[str, bytes], stack: ExitStack, headers: Path | None = None
 ) -> ctypes.CDLL:
-    """A C file of this folder as a library, with the files `beside` it; loaded.
+    """A C file as a library, with the files `beside` it; loaded.
 
     `headers` is a folder of other people's.
 
@@ -30,9 +30,9 @@ def c_library(
     folder = new_folder(stack)
     for name, text in beside.items():
         (folder / name).write_bytes(text)
-    for name in (source, "export.h"):
-        shutil.copy(Path(__file__).with_name(name), folder)
-    library = Path(source).with_suffix(host_platform().suffix).name
+    for file in (source, Path(__file__).with_name("export.h")):
+        shutil.copy(file, folder)
+    library = source.with_suffix(host_platform().suffix).name
     sources = sorted(path.name for path in folder.glob("*.c"))
     compile_library(folder, sources, library, c_compiler(), headers)
     return ctypes.CDLL(str(folder / library))

@@ -3,6 +3,7 @@
 import ctypes
 from collections.abc import Callable
 from contextlib import ExitStack
+from pathlib import Path
 
 from laglab.bench.c_library import c_library, new_folder
 from laglab.bench.harness import Bench, Contest, Turn, microseconds, timed
@@ -110,7 +111,7 @@ def _decode_theirs(signed: bool) -> Block:
 def _compiled(stack: ExitStack) -> ctypes.CDLL:
     headers = new_folder(stack)
     generate(dialect_path(), "C", headers)
-    library = c_library("codec.c", {}, stack, headers)
+    library = c_library(Path(__file__).with_name("codec.c"), {}, stack, headers)
     library.use_key(KEY)
     return library
 

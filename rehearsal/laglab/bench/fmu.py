@@ -4,6 +4,7 @@ import ctypes
 from collections.abc import Sequence
 from contextlib import ExitStack
 from itertools import count, islice
+from pathlib import Path
 
 import fmpy
 import numpy as np
@@ -132,7 +133,7 @@ def _plain(robots: int, ticks: int, stack: ExitStack) -> Turn:
         for name, text in c_files().items()
         if name.endswith(".h") or name.startswith(("robot", "noise"))
     }
-    library = c_library("plain_loop.c", sources, stack)
+    library = c_library(Path(__file__).with_name("plain_loop.c"), sources, stack)
     library.plain_start.restype = ctypes.c_void_p
     robot_array = ctypes.c_void_p(library.plain_start(ctypes.c_size_t(robots)))
     stack.callback(library.plain_end, robot_array)

@@ -11,7 +11,8 @@ from laglab.commands.run import KeyOption
 from laglab.progress import status
 from laglab.results.whole import whole_file
 from laglab.results.writable import file_place, folder_place
-from laglab_conformance import Pace, Side, Waits
+from laglab.selftest import self_test as parsers_tested
+from laglab_conformance import Pace, Scope, Side, Waits
 from laglab_conformance import conform as test_conformance
 from laglab_protocol import make_key, read_key
 from laglab_protocol.dialect.lint import lint as find_faults
@@ -62,8 +63,10 @@ def keygen(
 
 
 def conform(
-    url: Annotated[str, typer.Argument(metavar="URL", help="Where the other side answers.")],
-    side: Annotated[Side, typer.Option(help="What answers there.")],
+    url: Annotated[
+        str | None, typer.Argument(metavar="URL", help="Where the other side answers.")
+    ] = None,
+    side: Annotated[Side | None, typer.Option(help="What answers there.")] = None,
     junit: Annotated[
         Path | None, typer.Option("--junit", metavar="FILE", help="Also write JUnit XML.")
     ] = None,
@@ -87,11 +90,28 @@ def conform(
             help="Only whether a robot in lock-step gives up a silent station, which ends its run.",
         ),
     ] = False,
+    self_test: Annotated[
+        bool,
+        typer.Option(
+            "--self-test",
+            help="Nothing but how robots do that read by pymavlink, by mavgen's C, by libmav.",
+        ),
+    ] = False,
 ) -> None:
     """Test whether what answers at URL speaks the protocol.
 
     The robot, or the controller, whose run it ends.
     """
+    if self_test:
+        if url or side:
+            raise typer.BadParameter("--self-test has robots of its own: leave URL and --side out")
+        with status() as tell:
+            tell("robots that read by other people's parsers")
+            tested = parsers_tested()
+        print(tested.table())
+        return
+    if url is None or side is None:
+        raise typer.BadParameter("say where the other side answers, URL, and what it is, --side")
     if side == "controller" and pace:
         raise typer.BadParameter("a controller keeps no pace of its own: leave --pace out")
     if silent and (side == "controller" or pace == "realtime"):
@@ -112,7 +132,8 @@ def conform(
 
         waits = Waits(appear=max(Waits().appear, wait), react=wait)
         how = pace or "lockstep"
-        report = test_conformance(url, side, key, waits, how, silent, progress)
+        scope: Scope = "silence" if silent else "all"
+        report = test_conformance(url, side, key, waits, how, scope, progress)
     print(report.table())
     if junit:
         with whole_file(junit) as file:

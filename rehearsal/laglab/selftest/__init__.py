@@ -1,0 +1,5 @@
+"""The conformance kit on parsers that others wrote: which of its items can a robot on them pass?"""
+
+from laglab.selftest.table import SelfTest, self_test
+
+__all__ = ["SelfTest", "self_test"]
