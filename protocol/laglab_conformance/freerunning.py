@@ -13,6 +13,7 @@ from laglab_conformance.robot import (
     NOT_FINITE,
     NOT_MEANT,
     RECALLS,
+    ROUNDED,
     SETTINGS,
     RobotSession,
     creep,
@@ -155,7 +156,8 @@ def _creep(session: FreeRunningSession) -> None:
 
 
 def _stands(frame: Frame) -> bool:
-    return isinstance(frame.message, Measurement) and frame.message.speeds == (0.0, 0.0)
+    told = frame.message
+    return isinstance(told, Measurement) and abs(told.v) < CREEP * ROUNDED and told.omega == 0.0
 
 
 def _tells_of(stamp: int, frame: Frame) -> bool:

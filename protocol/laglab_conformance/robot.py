@@ -34,6 +34,8 @@ ANOTHER, EVERYBODY = 7, 0
 
 CREEP = 1e-6
 """[m/s] Nobody sees it, and yet measurements tell it from a standstill."""
+ROUNDED = 1e-3
+"""What of a speed may get lost in a robot, as a share: many count in single precision."""
 
 
 class RobotSession(Session):
@@ -144,8 +146,9 @@ def creep(session: RobotSession) -> Measurement | None:
 
 
 def creeps(frame: Frame) -> bool:
-    """Whether it tells that the robot creeps."""
-    return isinstance(frame.message, Measurement) and frame.message.v == CREEP
+    """Whether it tells that the robot creeps, as far as the robot can count."""
+    told = frame.message
+    return isinstance(told, Measurement) and math.isclose(told.v, CREEP, rel_tol=ROUNDED)
 
 
 def _begins(session: RobotSession) -> str | None:

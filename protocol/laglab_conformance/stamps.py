@@ -6,6 +6,7 @@ from itertools import pairwise
 from laglab_conformance.items import Item
 from laglab_conformance.robot import (
     CREEP,
+    ROUNDED,
     RobotSession,
     batches,
     creep,
@@ -70,7 +71,7 @@ def _echoes(session: RobotSession) -> str | None:
             return f"the measurement of tick {each.tick} names command {each.command_tick}"
         if not (others or each.command_tick in {NO_COMMAND, *session.said}):
             return f"the measurement of tick {each.tick} names a command that nobody sent"
-        if (abs(each.v) > CREEP or each.omega != 0.0) and not others:
+        if (abs(each.v) > CREEP * (1 + ROUNDED) or each.omega != 0.0) and not others:
             return f"the measurement of tick {each.tick} moves, though nobody commanded it"
     return None
 

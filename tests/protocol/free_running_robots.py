@@ -1,6 +1,7 @@
 """Small robots with a clock of their own, each with one fault, or one habit, if told so."""
 
 import math
+import struct
 import time
 from collections import deque
 
@@ -86,3 +87,5 @@ class FreeRunningRobot(Robot):
         older = self.fault == "follows older commands" and command.tick < self.newest
         if command.tick > self.newest or again or older:
             self.newest, self.v, self.fresh = command.tick, command.v, time.monotonic()
+            if self.fault == "counts in single precision":
+                (self.v,) = struct.unpack("f", struct.pack("f", command.v))
