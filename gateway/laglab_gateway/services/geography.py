@@ -62,6 +62,10 @@ class Origin:
         )
 
 
+SOMEWHERE = Origin()
+"""Unless somebody says another place: one has to be, for a robot to be on a map at all."""
+
+
 def global_position(state: RobotState, origin: Origin) -> GlobalPositionInt:
     """Where it is, how fast, and where its nose points."""
     ned = to_ned(state)

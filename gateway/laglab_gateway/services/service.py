@@ -3,7 +3,7 @@
 from laglab_gateway.services.absent import about_absent
 from laglab_gateway.services.asker import Asker
 from laglab_gateway.services.commands import Commands
-from laglab_gateway.services.geography import Origin
+from laglab_gateway.services.geography import SOMEWHERE, Origin
 from laglab_gateway.services.missions import about_missions
 from laglab_gateway.services.pace import Pace
 from laglab_gateway.services.parameters import Parameters
@@ -24,7 +24,7 @@ class Services:
         armed: bool = True,
         timesync: Timesyncing | None = None,
         placeable: bool = True,
-        origin: Origin = Origin(),  # noqa: B008 it cannot be changed
+        origin: Origin = SOMEWHERE,
     ) -> None:
         self.parameters = parameters
         self.arming = Arming(armed, placeable)
