@@ -44,6 +44,7 @@ from laglab_gateway.record.trace import (
 )
 from laglab_gateway.relay import Relay
 from laglab_gateway.services import (
+    Origin,
     Parameter,
     Parameters,
     Services,
@@ -77,6 +78,7 @@ __all__ = [
     "LinkReport",
     "LinkRow",
     "MemoryRecorder",
+    "Origin",
     "Outcome",
     "Parameter",
     "Parameters",

@@ -39,7 +39,10 @@ with atheris.instrument_imports(
     from laglab_station import Station
 
 LARGEST_FRAME = 10 + 255 + 2 + 13
-REQUESTS = [LAYOUT_OF_ID[number] for number in (4, 20, 21, 23, 75, 76, 111)]
+REQUESTS = [
+    LAYOUT_OF_ID[number]
+    for number in (4, 11, 20, 21, 23, 43, 44, 48, 66, 75, 76, 110, 111, 117, 119, 183, 320, 323)
+]
 MESSAGES = [
     Measurement(1.5, -2.0, 3.0, 0.5, -1.7, 30, 20),
     Tick(30, 1),

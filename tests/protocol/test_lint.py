@@ -76,6 +76,22 @@ def test_our_dialect_has_no_fault() -> None:
     assert lint(dialect_path()) == []
 
 
+PUBLISHED = """
+    <message id="183" name="AUTOPILOT_VERSION_REQUEST"><description>Of another.</description>
+      <field type="uint8_t" name="target_system">Whom.</field>
+      <field type="uint8_t" name="target_component">Whom.</field>
+    </message>
+  </messages>"""
+"""As in ardupilotmega.xml, which `GOOD` does not include."""
+
+
+def test_a_message_of_another_published_dialect_may_be_repeated_as_it_is(tmp_path: Path) -> None:
+    assert linted(tmp_path, GOOD.replace("</messages>", PUBLISHED)) == []
+    for was, becomes in {"_REQUEST": "_QUESTION", "target_component": "whom"}.items():
+        (found,) = linted(tmp_path, GOOD.replace("</messages>", PUBLISHED.replace(was, becomes)))
+        assert "private dialects" in found.what
+
+
 def test_a_good_dialect_has_no_fault_and_generates(tmp_path: Path) -> None:
     assert linted(tmp_path, GOOD) == []
     generate(tmp_path / "rover.xml", "Python3", tmp_path / "rover.py")

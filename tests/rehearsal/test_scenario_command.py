@@ -21,7 +21,7 @@ Printed = Callable[..., str]
 REFERENCE = Path(__file__).parents[2] / "docs" / "reference"
 UNITS = {
     "-", "1", "s", "ticks", "m", "m/s", "rad/s", "1/s", "m, m, rad", "m², m², rad²", "(rad/s)²",
-    "bit/s", "byte",
+    "bit/s", "byte", "deg",
 }  # fmt: skip
 
 

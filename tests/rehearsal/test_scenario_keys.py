@@ -91,6 +91,11 @@ SAFETY: Keys = {
     **dict.fromkeys(("v_limit", "omega_limit"), POSITIVE),
     **dict.fromkeys(("link_timeout", "ramp"), NOT_NEGATIVE),
 }
+ORIGIN: Keys = {
+    "latitude": st.floats(-89, 89),
+    "longitude": st.floats(-180, 180),
+    "altitude": st.floats(-1000, 10000),
+}
 TOP: Keys = {
     "name": TEXT,
     "description": TEXT,
@@ -108,6 +113,7 @@ TOP: Keys = {
     "law": table(LAW),
     "link": table(LINK),
     "safety": table(SAFETY),
+    "origin": table(ORIGIN),
 }
 
 
@@ -137,6 +143,7 @@ def test_the_strategies_know_every_key() -> None:
         *(f"law.{key}" for key in LAW),
         *(f"link.{key}" for key in LINK),
         *(f"safety.{key}" for key in SAFETY),
+        *(f"origin.{key}" for key in ORIGIN),
         *(f"link.event.{ANY}.{key}" for key in EVENT),
         *(f"plant.event.{ANY}.{key}" for key in (*PLANT_EVENT, "by")),
     }

@@ -21,7 +21,9 @@ from laglab_protocol import (
     CommandLong,
     End,
     EndReason,
+    FileTransferProtocol,
     Heartbeat,
+    MissionRequestList,
     ParamRequestList,
     ParamSet,
     ParamValue,
@@ -54,6 +56,8 @@ def datagrams() -> list[bytes]:
         b"".join(stranger.frame(HEARTBEAT) for _ in range(60)),
         b"".join(signed.frame(HEARTBEAT) for _ in range(40)),
         stranger.frame(ParamRequestList(1, 1)) * 60 + stranger.frame(Ping(1, 1, 0, 0)) * 10,
+        stranger.frame(MissionRequestList(1, 1)) * 40
+        + stranger.frame(FileTransferProtocol(0, 1, 1, (0,) * 251)) * 10,
         b"\xfd",
     ]
 

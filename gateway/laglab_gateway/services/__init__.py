@@ -2,6 +2,7 @@
 
 from laglab_gateway.services.asker import Asker, Askers
 from laglab_gateway.services.commands import Commands
+from laglab_gateway.services.geography import Origin
 from laglab_gateway.services.pace import Pace
 from laglab_gateway.services.parameters import (
     Parameter,
@@ -19,6 +20,7 @@ __all__ = [
     "Asker",
     "Askers",
     "Commands",
+    "Origin",
     "Pace",
     "Parameter",
     "Parameters",

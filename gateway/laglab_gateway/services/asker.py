@@ -5,13 +5,12 @@ from collections import OrderedDict
 from laglab_gateway.services.pace import Pace
 from laglab_protocol import (
     Address,
+    CommandInt,
+    CommandLong,
     Frame,
     Message,
-    ParamRequestList,
-    ParamRequestRead,
-    Ping,
+    ParamSet,
     Ration,
-    Timesync,
 )
 
 ANSWERS_AT_ONCE = 64
@@ -24,8 +23,8 @@ FORGOTTEN = 10.0
 GONE = 60.0
 """[s] Who was silent for so long is told nothing more: a ground station calls every second."""
 
-QUESTIONS = (ParamRequestList, ParamRequestRead, Ping, Timesync)
-"""What asks and changes nothing: passed over when no answer is left."""
+CHANGES = (CommandLong, CommandInt, ParamSet)
+"""All else asks and changes nothing: it is passed over when no answer is left."""
 
 
 class Asker:
@@ -50,7 +49,7 @@ class Asker:
 
     def is_worth_asking(self, frame: Frame) -> bool:
         """Whether to look at what it says at all."""
-        return self.room >= 1 or not isinstance(frame.message, QUESTIONS)
+        return self.room >= 1 or isinstance(frame.message, CHANGES)
 
     def granted(self, answers: list[Message]) -> list[Message]:
         """As many of them as it may have."""

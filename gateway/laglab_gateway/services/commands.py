@@ -5,16 +5,13 @@ from collections.abc import Callable
 
 from msgspec.structs import astuple
 
+from laglab_gateway.services.modes import set_mode
 from laglab_gateway.services.pace import Pace
+from laglab_gateway.services.reports import REPORTS
+from laglab_gateway.services.results import ACCEPTED, DENIED, REJECTED_FOR_NOW, UNSUPPORTED
 from laglab_gateway.services.state import Arming
-from laglab_gateway.services.telemetry import REPORTS
-from laglab_protocol import CommandAck, CommandInt, CommandLong, Frame, Message
+from laglab_protocol import CommandAck, CommandInt, CommandLong, Frame, Message, SetMode
 from laglab_protocol.dialect.generated import laglab as mavlink
-
-ACCEPTED: int = mavlink.MAV_RESULT_ACCEPTED
-REJECTED_FOR_NOW: int = mavlink.MAV_RESULT_TEMPORARILY_REJECTED
-DENIED: int = mavlink.MAV_RESULT_DENIED
-UNSUPPORTED: int = mavlink.MAV_RESULT_UNSUPPORTED
 
 Numbers = tuple[float, ...]
 """param1 to param7; of COMMAND_INT the first four."""
@@ -27,17 +24,19 @@ SEE_ARM_AND_STOP = {
     mavlink.MAV_CMD_DO_FLIGHTTERMINATION,
     mavlink.MAV_CMD_REQUEST_MESSAGE,
     mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES,
+    mavlink.MAV_CMD_GET_HOME_POSITION,
+    mavlink.MAV_CMD_DO_SET_MODE,  # there is one mode, so it changes nothing
 }
 """What those may who need no key where others have one."""
 
 
 class Commands:
-    """Carries commands out. `report(id)` gives the message with this id, None if it has none."""
+    """Carries commands out. `report(id)` gives the message with this id, if it has one."""
 
     def __init__(
         self,
         arming: Arming,
-        report: Callable[[int], Message | None],
+        report: Callable[[int], list[Message]],
     ) -> None:
         self._arming = arming
         self._report = report
@@ -47,18 +46,18 @@ class Commands:
             mavlink.MAV_CMD_LAGLAB_RESET_POSE: self._reset_pose,
             mavlink.MAV_CMD_REQUEST_MESSAGE: self._request_message,
             mavlink.MAV_CMD_REQUEST_AUTOPILOT_CAPABILITIES: self._capabilities,
+            mavlink.MAV_CMD_GET_HOME_POSITION: self._home_position,
+            mavlink.MAV_CMD_DO_SET_MODE: _set_mode,
         }
 
     def answer(self, frame: Frame, pace: Pace | None, trusted: bool) -> list[Message]:
         """The acknowledgement, and what the command asked to be told. `pace` is the asker's, who
         may be denied what only the `trusted` may."""
-        message = frame.message
-        if not isinstance(message, CommandLong | CommandInt):
+        if (asked := _command_in(frame.message)) is None:
             return []
-        numbers = astuple(message)[: 7 if isinstance(message, CommandLong) else 4]
-        result, more = self._carry_out(message.command, numbers, pace, trusted)
-        ack = CommandAck(message.command, result, 0, 0, frame.system, frame.component)
-        return [ack, *more]
+        command, numbers = asked
+        result, more = self._carry_out(command, numbers, pace, trusted)
+        return [CommandAck(command, result, 0, 0, frame.system, frame.component), *more]
 
     def _carry_out(
         self, command: int, numbers: Numbers, pace: Pace | None, trusted: bool
@@ -91,12 +90,33 @@ class Commands:
         return (ACCEPTED if done else REJECTED_FOR_NOW), []
 
     def _request_message(self, numbers: Numbers) -> Result:
-        message = self._report(_message_id(numbers[0]))
-        return (UNSUPPORTED, []) if message is None else (ACCEPTED, [message])
+        return self._told(_message_id(numbers[0]))
 
-    def _capabilities(self, numbers: Numbers) -> Result:
-        del numbers
-        return self._request_message((float(mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION),))
+    def _capabilities(self, _: Numbers) -> Result:
+        return self._told(mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION)
+
+    def _home_position(self, _: Numbers) -> Result:
+        return self._told(mavlink.MAVLINK_MSG_ID_HOME_POSITION)
+
+    def _told(self, number: int) -> Result:
+        told = self._report(number)
+        return (ACCEPTED if told else UNSUPPORTED), told
+
+
+def _command_in(message: Message) -> tuple[int, Numbers] | None:
+    """Which command it is, and its numbers; None when it is none."""
+    match message:
+        case CommandLong():
+            return message.command, astuple(message)[:7]
+        case CommandInt():
+            return message.command, astuple(message)[:4]
+        case SetMode(custom_mode=custom_mode, base_mode=base_mode):
+            return mavlink.MAV_CMD_DO_SET_MODE, (base_mode, custom_mode)
+    return None
+
+
+def _set_mode(numbers: Numbers) -> Result:
+    return set_mode(numbers[0], numbers[1]), []
 
 
 def _set_interval(numbers: Numbers, pace: Pace | None) -> int:

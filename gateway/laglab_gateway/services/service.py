@@ -1,11 +1,14 @@
 """The robot's services as one: verified frames in, messages out. No I/O, no clock of its own."""
 
+from laglab_gateway.services.absent import about_absent
 from laglab_gateway.services.asker import Asker
 from laglab_gateway.services.commands import Commands
+from laglab_gateway.services.geography import SOMEWHERE, Origin
+from laglab_gateway.services.missions import about_missions
 from laglab_gateway.services.pace import Pace
 from laglab_gateway.services.parameters import Parameters
+from laglab_gateway.services.reports import REQUESTS, Seen, report
 from laglab_gateway.services.state import Arming, RobotState
-from laglab_gateway.services.telemetry import REPORTS
 from laglab_gateway.services.timesync import Timesyncing
 from laglab_protocol import ROBOT_COMPONENT, ROBOT_SYSTEM, Frame, Message, Ping, Timesync
 
@@ -21,11 +24,13 @@ class Services:
         armed: bool = True,
         timesync: Timesyncing | None = None,
         placeable: bool = True,
+        origin: Origin = SOMEWHERE,
     ) -> None:
         self.parameters = parameters
         self.arming = Arming(armed, placeable)
         self.timesync = timesync
-        self._state = RobotState(0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self._origin = origin
+        self._seen = self._seeing(RobotState(0, 0.0, 0.0, 0.0, 0.0, 0.0))
         self._commands = Commands(self.arming, self._report)
 
     def answer(
@@ -38,7 +43,7 @@ class Services:
         asker = asker or Asker()
         if not asker.is_worth_asking(frame):
             return []
-        self._state = state
+        self._seen = self._seeing(state)
         return asker.granted(self._answers(frame, asker.pace, trusted))
 
     def _answers(self, frame: Frame, pace: Pace | None, trusted: bool) -> list[Message]:
@@ -52,14 +57,21 @@ class Services:
         return [
             *self.parameters.answer(frame, trusted),
             *self._commands.answer(frame, pace, trusted),
+            *self._report(REQUESTS.get(type(message), -1)),
+            *about_missions(frame),
+            *about_absent(frame),
         ]
 
     def due(self, pace: Pace, state: RobotState, now_us: int) -> list[Message]:
         """The telemetry that it is time to send to one who watches; by any steady clock [us]."""
-        return [REPORTS[number](state, self.arming) for number in pace.due(now_us)]
+        seen = self._seeing(state)
+        return [message for number in pace.due(now_us) for message in report(number, seen)]
 
-    def _report(self, number: int) -> Message | None:
-        return REPORTS[number](self._state, self.arming) if number in REPORTS else None
+    def _seeing(self, state: RobotState) -> Seen:
+        return Seen(state, self.arming, self._origin)
+
+    def _report(self, number: int) -> list[Message]:
+        return report(number, self._seen)
 
 
 def _pong(frame: Frame, message: Ping) -> list[Message]:
@@ -69,6 +81,7 @@ def _pong(frame: Frame, message: Ping) -> list[Message]:
 
 
 def _for_the_robot(message: Message) -> bool:
+    """Some messages name a system alone; those that name none are meant for nobody."""
     system = getattr(message, "target_system", None)
-    component = getattr(message, "target_component", None)
+    component = getattr(message, "target_component", ANYBODY)
     return system in (ANYBODY, ROBOT_SYSTEM) and component in (ANYBODY, ROBOT_COMPONENT)

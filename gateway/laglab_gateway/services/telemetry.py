@@ -1,24 +1,15 @@
-"""The robot's state in the standard messages and their frames.
-
-Ours is x east, y north, theta from east towards north (ROS REP 103). MAVLink's world is north,
-east, down and its body forward, right, down, so yaw is from north towards east:
-north = y, east = x, yaw = pi/2 - theta, yaw rate = -omega.
-"""
+"""The robot's state in the standard messages."""
 
 import math
-import re
-from collections.abc import Callable
-from functools import cache
-from importlib.metadata import version
-from typing import NamedTuple
 
+from laglab_gateway.services.frames import to_ned
+from laglab_gateway.services.modes import MODE
 from laglab_gateway.services.state import Arming, RobotState
 from laglab_protocol import (
     Attitude,
-    AutopilotVersion,
+    ExtendedSysState,
     Heartbeat,
     LocalPositionNed,
-    Message,
     Odometry,
     SysStatus,
     SystemTime,
@@ -26,53 +17,21 @@ from laglab_protocol import (
 from laglab_protocol.dialect.generated import laglab as mavlink
 
 MAVLINK_VERSION = 3
-MATURITY: dict[str | None, int] = {
-    ".dev": mavlink.FIRMWARE_VERSION_TYPE_DEV,
-    "a": mavlink.FIRMWARE_VERSION_TYPE_ALPHA,
-    "b": mavlink.FIRMWARE_VERSION_TYPE_BETA,
-    "rc": mavlink.FIRMWARE_VERSION_TYPE_RC,
-    None: mavlink.FIRMWARE_VERSION_TYPE_OFFICIAL,
-}
-"""What a version's suffix (PEP 440) says of it."""
-CAPABILITIES: int = (
-    mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
-    | mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_ENCODE_C_CAST
-    | mavlink.MAV_PROTOCOL_CAPABILITY_COMMAND_INT
-    | mavlink.MAV_PROTOCOL_CAPABILITY_FLIGHT_TERMINATION
-    | mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
+SENSORS: int = (
+    mavlink.MAV_SYS_STATUS_SENSOR_GPS
+    | mavlink.MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS
+    | mavlink.MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL
 )
+HEALTHY: int = SENSORS | mavlink.MAV_SYS_STATUS_GEOFENCE
+"""There is no fence: it cannot be breached, which ground stations read from its health alone."""
 UNKNOWN = (math.nan,) + (0.0,) * 20
 """A covariance that is not told."""
 NO_VOLTAGE, NO_CURRENT, NO_BATTERY = 0xFFFF, -1, -1
 
 
-class Ned(NamedTuple):
-    """The state in MAVLink's frames: position and velocity in the world, yaw [m, m/s, rad]."""
-
-    north: float
-    east: float
-    v_north: float
-    v_east: float
-    yaw: float
-    yaw_rate: float
-
-
-def to_ned(state: RobotState) -> Ned:
-    """Convert; yaw is in (-pi, pi]."""
-    yaw = math.pi / 2 - state.theta
-    return Ned(
-        north=state.y,
-        east=state.x,
-        v_north=state.v * math.sin(state.theta),
-        v_east=state.v * math.cos(state.theta),
-        yaw=math.atan2(math.sin(yaw), math.cos(yaw)),
-        yaw_rate=-state.omega,
-    )
-
-
 def heartbeat(arming: Arming) -> Heartbeat:
     """A ground rover, and whether it may move."""
-    base_mode = mavlink.MAV_MODE_FLAG_GUIDED_ENABLED
+    base_mode = MODE
     if arming.armed:
         base_mode |= mavlink.MAV_MODE_FLAG_SAFETY_ARMED
     if arming.stopped:
@@ -91,11 +50,13 @@ def heartbeat(arming: Arming) -> Heartbeat:
 
 def sys_status() -> SysStatus:
     """Motors and odometry are there and well; there is no battery."""
-    sensors = (
-        mavlink.MAV_SYS_STATUS_SENSOR_MOTOR_OUTPUTS
-        | mavlink.MAV_SYS_STATUS_SENSOR_XY_POSITION_CONTROL
-    )
-    return SysStatus(sensors, sensors, sensors, 0, NO_VOLTAGE, NO_CURRENT, *(0,) * 6, NO_BATTERY)
+    power = NO_VOLTAGE, NO_CURRENT
+    return SysStatus(SENSORS, SENSORS, HEALTHY, 0, *power, *(0,) * 6, NO_BATTERY)
+
+
+def extended_sys_state() -> ExtendedSysState:
+    """It does not fly."""
+    return ExtendedSysState(mavlink.MAV_VTOL_STATE_UNDEFINED, mavlink.MAV_LANDED_STATE_ON_GROUND)
 
 
 def system_time(state: RobotState) -> SystemTime:
@@ -118,7 +79,11 @@ def local_position(state: RobotState) -> LocalPositionNed:
 
 
 def odometry(state: RobotState) -> Odometry:
-    """Pose in the world (NED), velocity in the body (forward, right, down)."""
+    """Pose in the world (NED), velocity in the body (forward, right, down).
+
+    MAV_FRAME_BODY_NED means just that, the one for positions and the other for velocities; of the
+    frames that do, it alone is known to mavsdk.
+    """
     ned = to_ned(state)
     return Odometry(
         time_usec=state.time_us,
@@ -134,43 +99,11 @@ def odometry(state: RobotState) -> Odometry:
         yawspeed=ned.yaw_rate,
         pose_covariance=UNKNOWN,
         velocity_covariance=UNKNOWN,
-        frame_id=mavlink.MAV_FRAME_LOCAL_NED,
-        child_frame_id=mavlink.MAV_FRAME_BODY_FRD,
+        frame_id=mavlink.MAV_FRAME_BODY_NED,
+        child_frame_id=mavlink.MAV_FRAME_BODY_NED,
         estimator_type=mavlink.MAV_ESTIMATOR_TYPE_NAIVE,
     )
 
 
-@cache
-def autopilot_version() -> AutopilotVersion:
-    """Which version of what this is."""
-    ours, nothing = packed_version(version("laglab")), (0,) * 8
-    return AutopilotVersion(CAPABILITIES, 0, ours, 0, 0, 0, 0, 0, nothing, nothing, nothing)
-
-
-def packed_version(text: str) -> int:
-    """`1.2.3rc4` as AUTOPILOT_VERSION has it: major, minor, patch and maturity, a byte each.
-
-    Raises ValueError for what is not a version.
-    """
-    found = re.match(r"(\d+)(?:\.(\d+))?(?:\.(\d+))?(a|b|rc|\.dev)?", text)
-    if found is None:
-        raise ValueError(f"{text!r} is not a version such as 1.2.3")
-    *numbers, suffix = found.groups()
-    major, minor, patch = (min(int(number or 0), 255) for number in numbers)
-    return major << 24 | minor << 16 | patch << 8 | MATURITY[suffix]
-
-
 def _milliseconds(state: RobotState) -> int:
     return state.time_us // 1000
-
-
-REPORTS: dict[int, Callable[[RobotState, Arming], Message]] = {
-    mavlink.MAVLINK_MSG_ID_HEARTBEAT: lambda _, arming: heartbeat(arming),
-    mavlink.MAVLINK_MSG_ID_SYS_STATUS: lambda _, __: sys_status(),
-    mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: lambda state, _: system_time(state),
-    mavlink.MAVLINK_MSG_ID_ATTITUDE: lambda state, _: attitude(state),
-    mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED: lambda state, _: local_position(state),
-    mavlink.MAVLINK_MSG_ID_ODOMETRY: lambda state, _: odometry(state),
-    mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION: lambda _, __: autopilot_version(),
-}
-"""Every message that may be asked for."""

@@ -194,9 +194,22 @@ def _identity(message: Element, where: str, taken: Taken) -> Iterator[Finding]:
         yield Finding(where, f"id {message.get('id')!r}: write a plain number")
     elif number in taken.ids:
         yield Finding(where, f"id {number}: an included dialect has it already")
-    elif number not in PRIVATE_IDS:
+    elif number not in PRIVATE_IDS and not _is_published(message):
         first, last = PRIVATE_IDS[0], PRIVATE_IDS[-1]
         yield Finding(where, f"id {number}: private dialects use {first} to {last}")
+
+
+def _is_published(message: Element) -> bool:
+    """Whether a dialect that pymavlink carries has the very same message."""
+    xpath = f"messages/message[@id='{_number(message.get('id'))}']"
+    dialects = map(_parse, sorted(carried_dialects().glob("*.xml")))
+    return any(_shape(message) == _shape(each) for xml in dialects for each in xml.findall(xpath))
+
+
+def _shape(message: Element) -> tuple[str, list[tuple[str | None, str]]]:
+    """What its checksum is made of, and more: its name, and the types and names of its fields."""
+    fields = message.findall("field")
+    return _name(message), [(field.get("type"), _name(field)) for field in fields]
 
 
 def _targets(fields: list[Element], where: str) -> Iterator[Finding]:

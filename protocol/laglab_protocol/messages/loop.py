@@ -11,7 +11,10 @@ from msgspec import defstruct
 
 from laglab_protocol.dialect.generated import laglab as dialect
 from laglab_protocol.errors import DialectError
+from laglab_protocol.messages.autopilots import AUTOPILOTS
 from laglab_protocol.messages.base import Message
+from laglab_protocol.messages.geographic import GEOGRAPHIC
+from laglab_protocol.messages.missions import MISSIONS
 from laglab_protocol.messages.standard import STANDARD
 
 NO_COMMAND = -1
@@ -157,6 +160,9 @@ WRITTEN_OUT: dict[str, type[Message]] = {
     "LAGLAB_RECALL": Recall,
     "LAGLAB_APPLIED": Applied,
     **STANDARD,
+    **GEOGRAPHIC,
+    **MISSIONS,
+    **AUTOPILOTS,
 }
 
 _IDS: dict[str, int] = {made.msgname: number for number, made in dialect.mavlink_map.items()}

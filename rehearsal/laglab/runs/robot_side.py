@@ -144,7 +144,7 @@ def robot_services(
 ) -> Services:
     """What ground stations find; where time is simulated, no clocks are compared."""
     timesync = Timesyncing(time.monotonic_ns) if free_running else None
-    return Services(shown_parameters(scenario), armed, timesync, placeable=placeable)
+    return Services(shown_parameters(scenario), armed, timesync, placeable, scenario.origin)
 
 
 @contextmanager

@@ -18,7 +18,7 @@ from laglab.scenario.tables.plant import PlantTable
 from laglab.scenario.tables.table import POSE, Pose, Table, as_in
 from laglab.scenario.toml import parsed
 from laglab_control import FAR, RobotModel, is_far
-from laglab_gateway import Safety
+from laglab_gateway import Origin, Safety
 from laglab_gateway.values import Duration, Number, Positive, Switch, Whole, described
 
 LAST = 2**32 - 1
@@ -73,6 +73,9 @@ class Scenario(Table):
         LinkTable, described("-", "The way between the two sides: its delays, and more.")
     ] = LinkTable()
     safety: Annotated[Safety, described("-", "The robot's own limits and failsafe.")] = Safety()
+    origin: Annotated[
+        Origin, described("-", "Where on Earth the run takes place, for ground stations' maps.")
+    ] = Origin()
 
     @model_validator(mode="after")
     def _whole_ticks(self) -> Self:

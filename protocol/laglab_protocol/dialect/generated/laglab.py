@@ -6344,6 +6344,7 @@ enums["MAV_COMPONENT"][251] = EnumEntry("MAV_COMPONENT_ENUM_END", """""")
 # message IDs
 MAVLINK_MSG_ID_BAD_DATA = -1
 MAVLINK_MSG_ID_UNKNOWN = -2
+MAVLINK_MSG_ID_AUTOPILOT_VERSION_REQUEST = 183
 MAVLINK_MSG_ID_LAGLAB_TICK = 52100
 MAVLINK_MSG_ID_LAGLAB_MEASUREMENT = 52101
 MAVLINK_MSG_ID_LAGLAB_COMMAND = 52102
@@ -6562,6 +6563,46 @@ MAVLINK_MSG_ID_HYGROMETER_SENSOR = 12920
 MAVLINK_MSG_ID_GLOBAL_POSITION_INT = 33
 MAVLINK_MSG_ID_AUTOPILOT_VERSION = 148
 MAVLINK_MSG_ID_HEARTBEAT = 0
+
+
+class MAVLink_autopilot_version_request_message(MAVLink_message):
+    """
+    Ground station to robot: send AUTOPILOT_VERSION. As in
+    ardupilotmega.xml, for the programs that still ask so.
+    """
+
+    id = MAVLINK_MSG_ID_AUTOPILOT_VERSION_REQUEST
+    msgname = "AUTOPILOT_VERSION_REQUEST"
+    fieldnames = ["target_system", "target_component"]
+    ordered_fieldnames = ["target_system", "target_component"]
+    fieldtypes = ["uint8_t", "uint8_t"]
+    fielddisplays_by_name: Dict[str, str] = {}
+    fieldenums_by_name: Dict[str, str] = {}
+    fieldunits_by_name: Dict[str, str] = {}
+    native_format = bytearray(b"<BB")
+    orders = [0, 1]
+    lengths = [1, 1]
+    array_lengths = [0, 0]
+    crc_extra = 85
+    unpacker = struct.Struct("<BB")
+    instance_field = None
+    instance_offset = -1
+
+    def __init__(self, target_system: int, target_component: int):
+        MAVLink_message.__init__(self, MAVLink_autopilot_version_request_message.id, MAVLink_autopilot_version_request_message.msgname)
+        self._fieldnames = MAVLink_autopilot_version_request_message.fieldnames
+        self._instance_field = MAVLink_autopilot_version_request_message.instance_field
+        self._instance_offset = MAVLink_autopilot_version_request_message.instance_offset
+        self.target_system = target_system
+        self.target_component = target_component
+
+    def pack(self, mav: "MAVLink", force_mavlink1: bool = False) -> bytes:
+        return self._pack(mav, self.crc_extra, self.unpacker.pack(self.target_system, self.target_component), force_mavlink1=force_mavlink1)
+
+
+# Define name on the class for backwards compatibility (it is now msgname).
+# Done with setattr to hide the class variable from mypy.
+setattr(MAVLink_autopilot_version_request_message, "name", mavlink_msg_deprecated_name_property())
 
 
 class MAVLink_laglab_tick_message(MAVLink_message):
@@ -16992,6 +17033,7 @@ setattr(MAVLink_heartbeat_message, "name", mavlink_msg_deprecated_name_property(
 
 
 mavlink_map: Dict[int, Type[MAVLink_message]] = {
+    MAVLINK_MSG_ID_AUTOPILOT_VERSION_REQUEST: MAVLink_autopilot_version_request_message,
     MAVLINK_MSG_ID_LAGLAB_TICK: MAVLink_laglab_tick_message,
     MAVLINK_MSG_ID_LAGLAB_MEASUREMENT: MAVLink_laglab_measurement_message,
     MAVLINK_MSG_ID_LAGLAB_COMMAND: MAVLink_laglab_command_message,
@@ -17605,6 +17647,28 @@ class MAVLink(object):
         m._crc = crc
         m._header = MAVLink_header(msgId, incompat_flags, compat_flags, mlen, seq, srcSystem, srcComponent)
         return m
+
+    def autopilot_version_request_encode(self, target_system: int, target_component: int) -> MAVLink_autopilot_version_request_message:
+        """
+        Ground station to robot: send AUTOPILOT_VERSION. As in
+        ardupilotmega.xml, for the programs that still ask so.
+
+        target_system             : System ID of the robot. (type:uint8_t)
+        target_component          : Component ID of the robot. (type:uint8_t)
+
+        """
+        return MAVLink_autopilot_version_request_message(target_system, target_component)
+
+    def autopilot_version_request_send(self, target_system: int, target_component: int, force_mavlink1: bool = False) -> None:
+        """
+        Ground station to robot: send AUTOPILOT_VERSION. As in
+        ardupilotmega.xml, for the programs that still ask so.
+
+        target_system             : System ID of the robot. (type:uint8_t)
+        target_component          : Component ID of the robot. (type:uint8_t)
+
+        """
+        self.send(self.autopilot_version_request_encode(target_system, target_component), force_mavlink1=force_mavlink1)
 
     def laglab_tick_encode(self, tick: int, measurements: int) -> MAVLink_laglab_tick_message:
         """

@@ -1,4 +1,4 @@
-"""MAVProxy, with our dialect: finds the robot, reads and sets parameters, arms it, sees it move."""
+"""MAVProxy, with our dialect and all that it loads by default, as a person uses it."""
 
 import queue
 import re
@@ -7,10 +7,12 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+
+from .asked import Asked
 
 PATIENCE = 20.0
 
@@ -48,6 +50,11 @@ class MavProxy:
                 return match
         raise AssertionError(f"no {pattern!r} in:\n{''.join(self._heard)}")
 
+    @property
+    def said(self) -> str:
+        """All that was heard of it so far."""
+        return "".join(self._heard)
+
     def end(self) -> None:
         self._process.kill()
         self._reader.join()
@@ -62,7 +69,6 @@ def mavproxy(port: int, tmp_path: Path) -> Iterator[MavProxy]:
         f"--master=udp:127.0.0.1:{port}",
         f"--state-basedir={tmp_path}",
         "--aircraft=rover",
-        "--default-modules=param,arm",
     ]
     with subprocess.Popen(
         [sys.executable, "-m", "laglab_protocol.pymavlink", script, *options],
@@ -77,6 +83,13 @@ def mavproxy(port: int, tmp_path: Path) -> Iterator[MavProxy]:
         running.end()
 
 
+def wait_until(done: Callable[[], bool]) -> None:
+    deadline = time.monotonic() + PATIENCE
+    while not done():
+        assert time.monotonic() < deadline, "in vain"
+        time.sleep(0.1)
+
+
 def north_and_east(mavproxy: MavProxy) -> tuple[float, float]:
     mavproxy.say("status LOCAL_POSITION_NED")
     match = mavproxy.hears(
@@ -86,10 +99,26 @@ def north_and_east(mavproxy: MavProxy) -> tuple[float, float]:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("rover")
-def test_mavproxy_finds_reads_sets_arms_and_sees_it_move(mavproxy: MavProxy) -> None:
+def test_mavproxy_asks_for_everything_and_sees_it_move(mavproxy: MavProxy, rover: Asked) -> None:
     mavproxy.hears("Detected vehicle 1:1")
     mavproxy.hears("Received 5 parameters")
+    for line, answer in {
+        "fence list": "Requesting 0 fence items",
+        "wp list": "Requesting 0 waypoints",
+        "rally list": "Requesting 0 rally items",
+        "wp clear": "MISSION_ACK: TYPE_MISSION: ACCEPTED",
+        "log list": "No logs",
+        "version": "REQUEST_MESSAGE: ACCEPTED",
+        "mode MANUAL": "DO_SET_MODE: DENIED",
+        "arm safetyon": "DO_SET_MODE: DENIED",
+        "ftp list /": "opcode:129",
+        "status GPS_RAW_INT": r"fix_type : 3, lat : 21037\d+, lon : 105781\d+",
+        "status HOME_POSITION": "latitude : 210380000, longitude : 1057820000",
+    }.items():
+        mavproxy.say(line)
+        mavproxy.hears(answer)
+    mavproxy.say("set streamrate 2")
+    wait_until(lambda: any(each.name == "REQUEST_DATA_STREAM" for each in rover.requests))
 
     mavproxy.say("param set V_MAX 1.5")
     time.sleep(0.5)  # it sends, and tells nothing when it is confirmed
@@ -100,10 +129,9 @@ def test_mavproxy_finds_reads_sets_arms_and_sees_it_move(mavproxy: MavProxy) -> 
     mavproxy.say("arm throttle")
     mavproxy.hears("COMPONENT_ARM_DISARM: ACCEPTED")
     mavproxy.hears("ARMED")
-    deadline = time.monotonic() + PATIENCE
-    while north_and_east(mavproxy) == (-2.0, -3.0):
-        assert time.monotonic() < deadline, "armed, but it does not move"
-        time.sleep(0.2)
+    wait_until(lambda: north_and_east(mavproxy) != (-2.0, -3.0))
 
     mavproxy.say("disarm")
     mavproxy.hears("DISARMED")
+    assert "breach" not in mavproxy.said
+    rover.check_against_table("MAVProxy")
