@@ -1,7 +1,9 @@
 """A turn, played: both sides as real processes, the blow, the strangers, and a look at them all."""
 
+import os
 import re
 import shutil
+import signal
 import uuid
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -43,7 +45,7 @@ def play(turn: Turn, folder: Path) -> Played:
         while not stage.over:
             stage.go_on()
             sleep(LOOK_EVERY)
-        running = marked(mark)
+        running = _rounded_up(mark)
     parts = tuple(process.part() for process in stage.processes)
     links = tuple(path.name for path in folder.iterdir() if path.is_symlink())
     return Played(
@@ -55,6 +57,15 @@ def play(turn: Turn, folder: Path) -> Played:
         descriptors=(before, _descriptors()),
         datagrams=stage.datagrams,
     )
+
+
+def _rounded_up(mark: str) -> list[int]:
+    """Whoever still runs that came of the turn; they do so no longer."""
+    running = marked(mark)
+    for number in running:
+        with suppress(ProcessLookupError):
+            os.kill(number, signal.SIGKILL)
+    return running
 
 
 def _same_trace(folder: Path) -> bool:
