@@ -88,6 +88,7 @@ def with_controller(controller: Part) -> Played:
     return replace(AS_IT_SHOULD, parts=(GATEWAY, controller))
 
 
+GROWING = tuple(Sample((100 + i) << 20, 9) for i in range(20))
 WRONG = {
     "exit codes are those of the situation": with_controller(replace(CONTROLLER, exit_code=4)),
     "no traceback": with_controller(replace(CONTROLLER, said="Traceback (most recent call …")),
@@ -99,9 +100,7 @@ WRONG = {
     "files are whole and readable": with_controller(replace(CONTROLLER, faults=("torn",))),
     "in lock-step the trace is the one inline": replace(AS_IT_SHOULD, same_trace=False),
     "memory stays below its bound": with_controller(replace(CONTROLLER, most_memory=1 << 30)),
-    "nothing grows": with_controller(
-        replace(CONTROLLER, samples=tuple(Sample((100 + i) << 20, 9) for i in range(20)))
-    ),
+    "nothing grows": with_controller(replace(CONTROLLER, ticks=10_000, samples=GROWING)),
     "descriptors stay below their bound": replace(AS_IT_SHOULD, descriptors=(9, 10)),
     "no process goes on": replace(AS_IT_SHOULD, running=(1,)),
     "nothing is left behind": replace(AS_IT_SHOULD, left=("port",)),

@@ -12,7 +12,7 @@ from laglab_control import ESTIMATORS
 
 T = TypeVar("T")
 
-SIMULATED = (20.0, 90.0)
+SIMULATED = (20.0, 150.0)
 """[s] of a run in lock-step."""
 REAL = (2.0, 5.0)
 """[s] by the clock, of a run in real time."""

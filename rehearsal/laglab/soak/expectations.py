@@ -12,7 +12,11 @@ OVER = frozenset({COMPLETED, DIVERGED})
 MOST_MEMORY = 256 << 20
 """[bytes] Of a side, whatever it does."""
 MOST_GROWTH = 4 << 20
-"""[bytes] In the later half of a run."""
+"""[bytes] In the later half of a run, whose windows of the past are full by then."""
+FILLING = 24 << 20
+"""[bytes] What these windows may take besides."""
+FULL_AFTER = 5_000
+"""Ticks."""
 FEWEST_SAMPLES = 8
 """To tell growth by."""
 MOST_DESCRIPTORS = 32
@@ -95,7 +99,7 @@ def nothing_grows(played: Played) -> Iterator[str]:
             continue
         early, late = part.samples[:half], part.samples[half:]
         grown = max(s.memory for s in late) - max(s.memory for s in early)
-        if grown > MOST_GROWTH:
+        if grown > MOST_GROWTH + (FILLING if part.ticks < 2 * FULL_AFTER else 0):
             yield f"the {part.side}'s memory grew by {grown >> 10} kB"
         opened = max(s.descriptors for s in late) - max(s.descriptors for s in early)
         if opened > 0:

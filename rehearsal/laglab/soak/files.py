@@ -15,13 +15,10 @@ TLOG_STAMP = 8
 """[bytes] Before each frame of a telemetry log."""
 
 
-def faults_of(folder: Path, struck: bool, met: bool) -> Iterator[str]:
-    """What is not as it should be. Who was struck may have no results, but no torn files; who met
-    nobody has nothing to tell."""
-    if not met:
-        return
+def faults_of(folder: Path, killed: bool) -> Iterator[str]:
+    """What is not as it should be. Who was killed may have no results, but no torn files."""
     yield from _torn(folder)
-    if not struck:
+    if not killed:
         yield from _unreadable(folder)
 
 

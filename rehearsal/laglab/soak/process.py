@@ -4,7 +4,8 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from time import monotonic
 
@@ -35,7 +36,7 @@ class Process:
         self.obeys = False
         self.ended_at: float | None = None
         self.started_at = monotonic()
-        with self._output.open("wb") as output:
+        with self._output.open("wb") as output, _heeding_signals():
             self._process = subprocess.Popen(
                 [sys.executable, "-m", "laglab", side, *arguments, "--out", str(folder)],
                 env=os.environ | {"TMPDIR": str(self._temporary), MARK: mark, "COLUMNS": "200"},
@@ -111,7 +112,7 @@ class Process:
             signal=self._signal,
             dismissed=self.sent_home,
             verdict=verdict_of(self.folder),
-            faults=tuple(faults_of(self.folder, self._signal is not None, met)),
+            faults=tuple(faults_of(self.folder, self._signal == "SIGKILL")) if met else (),
             left=tuple(left_in(self.folder, self._temporary)),
             ticks=ticks_of(self.folder),
         )
@@ -122,3 +123,16 @@ class Process:
             return (self.folder / TLOG_FILE).stat().st_size
         except OSError:
             return 0
+
+
+@contextmanager
+def _heeding_signals() -> Iterator[None]:
+    """What is started meanwhile obeys them, though we were perhaps started to ignore them."""
+    usual = {
+        which: signal.signal(which, signal.SIG_DFL) for which in (signal.SIGINT, signal.SIGTERM)
+    }
+    try:
+        yield
+    finally:
+        for which, handler in usual.items():
+            signal.signal(which, handler)
