@@ -124,6 +124,7 @@ class _Stage:
         """Look at everybody, and do what is due."""
         for process in self.processes:
             process.look()
+        self._send_home()
         if self.controller is None:
             if "waiting for the controller" in self.gateway.said:
                 self.controller = self._start("controller", "--endpoint", self._far_end())
@@ -132,7 +133,6 @@ class _Stage:
             self._under_way = monotonic()
         self._strike(self.controller)
         self._let_strangers_speak()
-        self._send_home()
 
     def _start(self, side: Side, *arguments: str) -> Process:
         scenario = str(self._folder / SCENARIO)
@@ -204,5 +204,5 @@ class _Stage:
         others = [other for other in self.processes if other is not process]
         if any(other.running for other in others):
             return False
-        alone_for = now - max(other.ended_at or now for other in others)
+        alone_for = now - max((other.ended_at or now for other in others), default=now)
         return alone_for > (self._turn.patience + LAST_WORDS if process.met else UNMET)
