@@ -25,7 +25,7 @@ UDP_STRANGERS: tuple[Strangers, ...] = (
 )
 SERIAL_STRANGERS = UDP_STRANGERS[:-1]
 """On a line nobody can tell one sender from another."""
-SIGNALS: tuple[Signal, ...] = ("SIGKILL", "SIGKILL", "SIGTERM", "SIGINT")
+SIGNALS: tuple[Signal, ...] = ("SIGKILL", "SIGKILL", "SIGTERM", "SIGINT", "SIGSTOP")
 SPEEDS = (0.5, 1.0, 2.0, 4.0)
 
 
@@ -47,7 +47,7 @@ def draw(rng: np.random.Generator, number: int) -> Turn:
         signed=_by_chance(rng, 0.5),
         blow=blow,
         strangers=strangers,
-        rate=float(10 ** rng.uniform(1, 3)) if strangers else 0.0,
+        rate=float(10 ** rng.uniform(1.5, 3.3)) if strangers else 0.0,
     )
 
 

@@ -51,7 +51,7 @@ def play(turn: Turn, folder: Path) -> Played:
     return Played(
         turn=turn,
         parts=parts,
-        same_trace=_same_trace(folder) if turn.lockstep and turn.blow is None else None,
+        same_trace=_same_trace(folder) if turn.lockstep and turn.goes_on else None,
         left=links,
         running=tuple(running),
         descriptors=(before, _descriptors()),
@@ -124,6 +124,7 @@ class _Stage:
         """Look at everybody, and do what is due."""
         for process in self.processes:
             process.look()
+            process.go_on_again()
         self._send_home()
         if self.controller is None:
             if "waiting for the controller" in self.gateway.said:

@@ -10,7 +10,7 @@ class Sample(NamedTuple):
     """A side, looked at while its run was under way."""
 
     memory: int
-    """[bytes]"""
+    """[bytes] Its own, without libraries."""
     descriptors: int
 
 
@@ -26,7 +26,7 @@ class Part:
     """Whether it has met the other side, before a signal came."""
     samples: tuple[Sample, ...]
     most_memory: int
-    """[bytes] Ever, its figure included."""
+    """[bytes] Ever, libraries and its figure included."""
     signal: Signal | None = None
     """What it was sent by the blow."""
     dismissed: bool = False
@@ -58,5 +58,6 @@ class Played:
 
     @property
     def struck(self) -> Part | None:
-        """The part that the blow met, if it came in time."""
-        return next((part for part in self.parts if part.signal), None)
+        """The part that the blow has ended, if it came in time."""
+        ended = (part for part in self.parts if part.signal not in (None, "SIGSTOP"))
+        return next(ended, None)

@@ -16,6 +16,8 @@ from laglab.soak.turn import Side, Signal
 from laglab_gateway import TLOG_FILE
 
 MARK = "LAGLAB_SOAK"
+PAUSE = 1.5
+"""[s] So long a process stands still after a SIGSTOP."""
 LAST_CHANCE = 20.0
 """[s] Who is sent home and has not gone after so long is killed."""
 
@@ -32,6 +34,7 @@ class Process:
         self._samples: list[tuple[int, Sample]] = []
         self._most_memory = 0
         self._signal: Signal | None = None
+        self._paused: float | None = None
         self._sent_home: float | None = None
         self.obeys = False
         self.ended_at: float | None = None
@@ -84,6 +87,13 @@ class Process:
         """Send it a signal."""
         self._signal = which
         self._process.send_signal(signal.Signals[which])
+        self._paused = monotonic() if which == "SIGSTOP" else None
+
+    def go_on_again(self) -> None:
+        """After a pause."""
+        if self._paused is not None and monotonic() - self._paused > PAUSE:
+            self._paused = None
+            self._process.send_signal(signal.SIGCONT)
 
     def send_home(self) -> None:
         """As a Ctrl-C does; when that was in vain, by force."""

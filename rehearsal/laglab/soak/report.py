@@ -49,7 +49,7 @@ def _lines(report: Report) -> Iterator[str]:
     yield ""
     yield from _table(("expectation", "turns that failed it"), _expectations(tally))
     yield from _table(("kind of turn", "turns", "failed"), _kinds(tally))
-    yield from _table(("side", "highest under way [MB]", "highest ever [MB]"), _memory(tally))
+    yield from _table(("side", "MB of its own, highest", "MB in all, highest"), _memory(tally))
     yield from _table(("side", "exit code", "times"), _codes(tally))
     if tally.failed:
         yield from _table(("failed", "by itself", "how"), _failed(tally))
@@ -74,7 +74,7 @@ def summary_tables(report: Report) -> Iterator[Table]:
     tally = report.tally
     yield _shown(("kind of turn", "turns", "failed"), _kinds(tally))
     yield _shown(("expectation", "failed"), _expectations(tally))
-    yield _shown(("side", "MB under way", "MB ever"), _memory(tally))
+    yield _shown(("side", "MB of its own", "MB in all"), _memory(tally))
 
 
 def _shown(head: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:

@@ -9,16 +9,16 @@ from typing import NamedTuple
 from laglab.errors import UnsupportedSystemError
 
 PROCESSES = Path("/proc")
-_STATUS = re.compile(r"^(VmHWM|VmRSS|SigCgt):\s+(\w+)", re.MULTILINE)
+_STATUS = re.compile(r"^(VmHWM|RssAnon|SigCgt):\s+(\w+)", re.MULTILINE)
 
 
 class Look(NamedTuple):
     """A process, looked at."""
 
     memory: int
-    """[bytes]"""
+    """[bytes] Its own: what it shares with files, the system takes and gives as it likes."""
     most_memory: int
-    """[bytes] Since its start."""
+    """[bytes] Since its start, files included."""
     descriptors: int
     obeys: bool
     """Whether it has said what a SIGTERM does."""
@@ -40,10 +40,10 @@ def look(process: int) -> Look | None:
         descriptors = len(list((folder / "fd").iterdir()))
     except OSError:
         return None
-    if "VmRSS" not in told:
+    if "RssAnon" not in told:
         return None  # it has ended, and nobody has asked how
     caught = int(told["SigCgt"], 16) >> (signal.SIGTERM - 1) & 1
-    return Look(1024 * int(told["VmRSS"]), 1024 * int(told["VmHWM"]), descriptors, bool(caught))
+    return Look(1024 * int(told["RssAnon"]), 1024 * int(told["VmHWM"]), descriptors, bool(caught))
 
 
 def marked(mark: str) -> list[int]:

@@ -33,9 +33,9 @@ class Memory:
     """The most that a side took [bytes]."""
 
     running: int = 0
-    """While its run was under way."""
+    """Its own, while its run was under way."""
     ever: int = 0
-    """Its figure included."""
+    """Libraries and figure included."""
 
     def add(self, part: Part) -> None:
         """One more process."""

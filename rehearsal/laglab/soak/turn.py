@@ -9,7 +9,7 @@ from laglab.scenario.overrides import Overrides
 
 Side = Literal["gateway", "controller"]
 Transport = Literal["udp", "serial"]
-Signal = Literal["SIGKILL", "SIGTERM", "SIGINT"]
+Signal = Literal["SIGKILL", "SIGTERM", "SIGINT", "SIGSTOP"]
 Strangers = Literal["garbage", "foreign frames", "requests", "bad signatures", "an impostor"]
 
 PATIENCE = 10.0
@@ -22,7 +22,7 @@ LONG_PATIENCE = 30.0
 
 @dataclass(frozen=True)
 class Blow:
-    """A signal to one of the sides."""
+    """A signal to one of the sides; after a SIGSTOP it goes on again soon."""
 
     side: Side
     signal: Signal
@@ -54,9 +54,14 @@ class Turn:
         return load(self.base, {**self.overrides, "silence_timeout": self.patience})
 
     @property
+    def goes_on(self) -> bool:
+        """Whether no signal ends it."""
+        return self.blow is None or self.blow.signal == "SIGSTOP"
+
+    @property
     def patience(self) -> float:
         """[s] The silence that the sides forgive."""
-        if self.blow is None:
+        if self.goes_on or self.blow is None:
             return PATIENCE
         return LONG_PATIENCE if self.blow.again else SHORT_PATIENCE
 
