@@ -68,7 +68,8 @@ def run_station(
         loop.introduce()
         return loop.answer_until_end()
     except KeyboardInterrupt:
-        loop.say(station.end(EndReason.INTERRUPTED))
+        with suppress(EndpointError):  # a link that is broken takes no last words
+            loop.say(station.end(EndReason.INTERRUPTED))
         raise
     except BaseException:
         with suppress(EndpointError):
@@ -92,8 +93,12 @@ class _Loop:
         self._refusals = Refusals(self._heard)
 
     def say(self, frames: list[bytes]) -> None:
-        self._link.send(b"".join(frames))
+        self._send(frames)
         self._onlooker.said(frames, self._station.tick)
+
+    def _send(self, frames: list[bytes]) -> None:
+        with suppress(FarEndGoneError):  # listening finds it gone too, and gives it time
+            self._link.send(b"".join(frames))
 
     def introduce(self) -> None:
         while self._station.tick is None and not self._station.closed:
@@ -134,7 +139,7 @@ class _Loop:
             return False
         answer = self._station.hear(frames)
         if answer:
-            self._link.send(b"".join(answer))
+            self._send(answer)
             self._station.look_ahead()
         self._onlooker.said([frame.raw for frame in frames] + answer, self._station.tick)
         if self._station.tick is not None:

@@ -21,6 +21,7 @@ from laglab.commands import (
     scenarios,
     serial,
     sides,
+    soak,
     trust,
 )
 from laglab.commands.group import alone, group
@@ -61,6 +62,7 @@ app.command("scenario")(scenario.scenario)
 app.command("compare")(compare.compare)
 app.command("consistency")(consistency.consistency)
 app.command("trust")(trust.trust)
+app.command("soak")(soak.soak)
 app.command("errata")(errata.errata)
 app.command("gateway")(sides.gateway)
 app.command("controller")(sides.controller)

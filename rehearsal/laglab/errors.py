@@ -19,6 +19,12 @@ class MissingExtraError(LaglabError):
     exit_code = 2
 
 
+class UnsupportedSystemError(LaglabError):
+    """The operating system lacks what is needed; the text says what."""
+
+    exit_code = 2
+
+
 class ResultsError(LaglabError):
     """What a run left cannot be read, or cannot be written; the text names the file."""
 

@@ -39,6 +39,14 @@ def tracked(work: Iterable[T], total: int, title: str, unit: str) -> Iterator[T]
 
 
 @contextmanager
+def passing(title: str, seconds: float) -> Iterator[Callable[[float], None]]:
+    """Shows how much of a given time is over, as it is told [s]."""
+    with _bar("s") as bar:
+        task = bar.add_task(title, total=round(seconds))
+        yield lambda elapsed: bar.update(task, completed=round(elapsed), refresh=True)
+
+
+@contextmanager
 def status() -> Iterator[Callable[[str], None]]:
     """Shows what is being done: the last that it was told. Gone at the end."""
     with _shown(TextColumn("{task.description}", markup=False), transient=True) as line:

@@ -83,7 +83,8 @@ class SimulatedLink:
                     answer = Command(1.0 + tick, 0.0, tick, ROBOT_SYSTEM, ROBOT_COMPONENT, 0)
                     self._queue(self._answer_time(tick), answer)
                 case End():
-                    self._queue(0.0, frame.message)
+                    behind = max([self.time, *(at for at, _ in self._inbox)]) - self.time
+                    self._queue(behind, frame.message)  # it reads in order
 
     def _queue(self, after: float, message: Message) -> None:
         self._inbox.append((self.time + after, self._sender.frame(message)))
@@ -189,6 +190,12 @@ def test_a_station_that_answers_a_machine_far_behind_is_heard() -> None:
     assert outcome == Outcome(EndReason.COMPLETED, 100)
     assert timing.missed_deadlines == 100
     assert gateway.audit.unanswered == 0
+
+
+@pytest.mark.parametrize("behind", [0.004, 0.3, 1.2])
+def test_a_station_that_is_behind_hears_of_the_end(behind: float) -> None:
+    gateway, *_ = run(SimulatedLink(lambda _: behind, lambda: 0.0), n=1, last_tick=300)
+    assert gateway.station_end is not None
 
 
 def test_a_silent_station_ends_the_run() -> None:

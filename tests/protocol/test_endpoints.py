@@ -14,6 +14,7 @@ from laglab_protocol import (
     Endpoint,
     FarEndGoneError,
     FarEndStalledError,
+    NoSuchPortError,
     PortBusyError,
     open_endpoint,
 )
@@ -231,6 +232,20 @@ def test_an_unplugged_port_says_so(stack: ExitStack, tmp_path: Path) -> None:
         station.receive(WAIT)
     with pytest.raises(FarEndGoneError, match="robot"):
         station.send(b"anybody?")
+
+
+def test_a_port_that_does_not_come_back_writes_nowhere(stack: ExitStack, tmp_path: Path) -> None:
+    """Its descriptor's number goes to the next file that is opened."""
+    robot, station = serial_pair(stack, tmp_path / "robot")
+    robot.close()
+    with pytest.raises(NoSuchPortError):
+        station.reopen()
+    others = [tmp_path / name for name in ("one", "two", "three")]
+    for path in others:
+        stack.enter_context(path.open("wb"))
+    with pytest.raises(FarEndGoneError):
+        station.send(b"anybody?")
+    assert [path.read_bytes() for path in others] == [b"", b"", b""]
 
 
 def test_a_reader_that_stopped_is_noticed(

@@ -102,9 +102,28 @@ def test_an_unplugged_port_ends_the_controller(start: Start, tmp_path: Path) -> 
     station = start("controller", *options, "--endpoint", f"serial://robot:{BAUD}")
     wait_until(lambda: rows(tmp_path / "run" / "trace.csv") > 50)
     gateway.kill()
-    errors = ended(station, 5)
+    errors = ended(station, 20)
     assert station.returncode == 4
     assert "the far end is gone" in errors.splitlines()[-1]
+
+
+def test_ctrl_c_while_a_port_is_unplugged(start: Start, tmp_path: Path) -> None:
+    """There is nobody to tell; it is an interrupt all the same."""
+    line = start("serial", "robot", "station")
+    wait_until((tmp_path / "station").exists)
+    station = start(
+        "controller", "lab", "--silence", "30", "--endpoint", f"serial://station:{BAUD}"
+    )
+    assert station.stderr is not None
+    assert "waiting for the robot" in station.stderr.readline()
+    line.send_signal(signal.SIGINT)
+    assert "waiting for it to come back" in station.stderr.readline()
+    line.wait(10)
+    time.sleep(0.3)
+    station.send_signal(signal.SIGINT)
+    errors = ended(station, 10)
+    assert station.returncode == 130
+    assert errors.splitlines() == ["laglab: interrupted"]
 
 
 @pytest.mark.parametrize("pace", ["lockstep", "realtime"])

@@ -219,10 +219,14 @@ class Conversation:
         self._around.progress(row.tick)
 
     def _say_goodbye(self) -> None:
-        """Tell the station, and give it a few chances to say that it heard."""
+        """Tell the station, and give it a few chances to say that it heard; as long as it answers
+        what came before, it is behind and has not read of the end."""
         outcome = self._gateway.stop(EndReason.FAILED)
         self._recorder.flush()
-        for _ in range(END_TRIES):
+        tries, latest = 0, self.now() + self._patience.silence
+        while tries < END_TRIES and self.now() < latest:
+            heard = self._heard
             self.send(self._gateway.farewell(outcome.reason))
             if self.listen_for(lambda: self._gateway.station_end is not None):
                 return
+            tries = tries + 1 if self._heard == heard else 0

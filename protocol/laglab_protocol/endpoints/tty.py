@@ -24,6 +24,8 @@ from laglab_protocol.errors import (
 
 READ_AT_MOST = 1024
 """Bytes at a time: whoever reads looks at its clock in between."""
+NOWHERE = -1
+"""The descriptor of a port that is closed: its number goes to the next file that is opened."""
 STALL_TIMEOUT = 1.0
 """Seconds that a full queue may stay full before the far end counts as stalled."""
 
@@ -139,6 +141,7 @@ class SerialPort(_Tty):
         """The number of a pty that is gone is given to the next program that makes one, so a pty
         counts as plugged in again only where its link was made anew."""
         self._port.close()
+        self._descriptor = NOWHERE
         plug = _plug(self._device)
         if plug == self._plug and os.path.realpath(self._device).startswith("/dev/pts/"):
             raise NoSuchPortError(f"{self.name}: nobody has made {self._device} again")

@@ -5,7 +5,7 @@ came out, as tables or as JSON.
 """
 
 from laglab.bench.harness import Bench, Contest, Progress, Turn, Unit, microseconds, run, timed
-from laglab.bench.result import Figure, Machine, Report, Result, Timing
+from laglab.bench.result import Figure, Machine, Report, Result, Timing, this_machine
 from laglab.bench.table import show
 
 __all__ = [
@@ -22,5 +22,6 @@ __all__ = [
     "microseconds",
     "run",
     "show",
+    "this_machine",
     "timed",
 ]

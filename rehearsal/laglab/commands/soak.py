@@ -1,0 +1,64 @@
+"""``laglab soak``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from laglab.extras import REHEARSING, require
+from laglab.progress import passing
+from laglab.results.writable import folder_place
+from laglab.soak import Soak, repeated, require_processes, summary_tables, verdict
+from laglab_protocol import require_terminals
+
+FAILED = 1
+MOST_MINUTES = 60.0 * 24 * 365
+
+
+def soak(
+    minutes: Annotated[
+        float, typer.Option(min=0.01, max=MOST_MINUTES, help="How long; the last turn is finished.")
+    ] = 30.0,
+    seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Of all that is drawn.")] = 1,
+    turn: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="Play the turn of this number alone.")
+    ] = None,
+    out: Annotated[
+        Path,
+        typer.Option("--out", metavar="DIR", help="For the report, and the turns that failed."),
+    ] = Path("runs/soak"),
+) -> None:
+    """Try both sides in random situations, for hours.
+
+    Scenarios, impairments, kills, restarts, strangers, over UDP and serial, signed and not; exit
+    codes, files, memory, descriptors and processes are checked in every one.
+    """
+    require(REHEARSING)
+    require_terminals("soak")
+    require_processes()
+    console = Console()
+
+    def tell(lines: list[str]) -> None:
+        for line in lines:
+            console.print(line, highlight=False, soft_wrap=True, markup=False)
+
+    command = f"laglab soak --minutes {minutes:g} --seed {seed}"
+    going = Soak(command if turn is None else repeated(seed, turn), seed, _place(out), tell)
+    try:
+        if turn is None:
+            with passing("soak", 60 * minutes) as passed:
+                going.turns(60 * minutes, passed)
+        else:
+            going.turn(turn)
+    finally:
+        going.write()
+    report = going.report()
+    for table in summary_tables(report):
+        console.print(table)
+    tell([verdict(report), f"report in {out}"])
+    raise typer.Exit(FAILED if report.tally.failed else 0)
+
+
+def _place(out: Path) -> Path:
+    return folder_place("--out", out)

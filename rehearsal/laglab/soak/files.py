@@ -1,0 +1,83 @@
+"""The files that a side leaves: whole, readable, and no others."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from laglab.errors import LaglabError
+from laglab.results.place import OURS
+from laglab.results.run import open_run
+from laglab.results.shadows import shadow_file
+from laglab_control import ESTIMATORS
+from laglab_gateway import LINK_FILE, TIMING_FILE, TLOG_FILE, TRACE_FILE, GatewayError
+from laglab_protocol import TlogError, read_tlog
+
+TLOG_STAMP = 8
+"""[bytes] Before each frame of a telemetry log."""
+
+
+def faults_of(folder: Path, killed: bool) -> Iterator[str]:
+    """What is not as it should be. Who was killed may have no results, but no torn files."""
+    yield from _torn(folder)
+    if not killed:
+        yield from _unreadable(folder)
+
+
+def _torn(folder: Path) -> Iterator[str]:
+    for name in (TRACE_FILE, LINK_FILE, TIMING_FILE):
+        path = folder / name
+        if path.exists() and (fault := _torn_table(path)):
+            yield f"{name}: {fault}"
+    log = folder / TLOG_FILE
+    try:
+        told = sum(TLOG_STAMP + len(frame.raw) for _, frame in read_tlog(log))
+        if told != log.stat().st_size:
+            yield f"{TLOG_FILE}: {log.stat().st_size - told} bytes are no record"
+    except (TlogError, OSError) as error:
+        yield f"{TLOG_FILE}: {error}"
+
+
+def _torn_table(path: Path) -> str:
+    """Every line is whole, and there is at least the head."""
+    commas = set()
+    line = b""
+    with path.open("rb") as lines:
+        for line in lines:
+            commas.add(line.count(b","))
+    if not line.endswith(b"\n"):
+        return "its last line is torn"
+    return "" if len(commas) == 1 else "its lines have different numbers of cells"
+
+
+def _unreadable(folder: Path) -> Iterator[str]:
+    try:
+        run = open_run(folder)
+        ticks, _, _ = run.trace["tick"], run.link, run.timing
+        if len(ticks) and (ticks[1:] <= ticks[:-1]).any():
+            yield "the ticks of its trace are not in order"
+    except (LaglabError, GatewayError) as error:
+        yield f"cannot be read: {error}"
+
+
+def verdict_of(folder: Path) -> str:
+    """Of its summary; empty when there is none."""
+    try:
+        return open_run(folder).summary.verdict
+    except LaglabError:
+        return ""
+
+
+def ticks_of(folder: Path) -> int:
+    """How many its summary tells of."""
+    try:
+        return open_run(folder).summary.ticks
+    except LaglabError:
+        return 0
+
+
+def left_in(folder: Path, temporary: Path) -> Iterator[str]:
+    """What has no business there any more."""
+    yield from (f"{temporary.name}/{path.name}" for path in temporary.iterdir())
+    if folder.exists():
+        ours = {*OURS, *(shadow_file(folder, name).name for name in ESTIMATORS)}
+        others = [each.name for each in folder.iterdir() if each.name not in ours]
+        yield from (f"{folder.name}/{name}" for name in others)
