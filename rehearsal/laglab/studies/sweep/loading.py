@@ -15,18 +15,21 @@ from laglab.scenario.model import plain
 from laglab.scenario.tables.table import Table
 from laglab.scenario.toml import parsed
 from laglab.studies.sweep.study import Study, axis
+from laglab_control import FAR
 from laglab_gateway.values import Positive, Whole, saying, wording
 
 SHIPPED = resources.files("laglab.studies.sweep") / "shipped"
 Seed = Annotated[Whole, Field(ge=0, lt=2**31)]
 Seeds = Annotated[
     Annotated[Whole, Field(ge=1, lt=2**31)] | Annotated[list[Seed], Field(min_length=1)],
-    saying("how many, 1 or more, or a list of seeds, each a whole number below 2^31"),
+    saying(
+        "a number of seeds, 1 or more, or a list of seeds, each whole, 0 or more and below 2^31"
+    ),
 ]
 
 
 class _Start(Table):
-    radius: Positive
+    radius: Annotated[Positive, Field(le=FAR)]
 
 
 class _File(Table):
@@ -85,7 +88,7 @@ def study_of(
 
 
 def _made(file: _File, path: Path, overrides: Overrides, seeds: int | None) -> Study:
-    grid = dict(_axes(file.grid))
+    grid = {key: _anchored(key, values, path.parent) for key, values in _axes(file.grid)}
     if "seed" in grid:
         raise StudyError("grid: seed: the seeds of a study are said by `seeds`")
     if file.start is not None and any(key.split(".")[0] == "start" for key in grid):
@@ -120,6 +123,13 @@ def _axes(table: dict[str, Any], above: str = "") -> Iterator[tuple[str, tuple[o
             yield above + key, axis(above + key, value)
         else:
             raise StudyError(f"grid: {above}{key}: must be a list of values, not {value!r}")
+
+
+def _anchored(key: str, values: tuple[object, ...], folder: Path) -> tuple[object, ...]:
+    """Paths are relative to the study's file."""
+    if key != "link.replay":
+        return values
+    return tuple(str((folder / str(value)).resolve()) for value in values)
 
 
 def to_toml(study: Study, origin: str) -> str:

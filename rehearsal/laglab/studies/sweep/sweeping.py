@@ -2,9 +2,10 @@
 
 import os
 from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from tempfile import mkdtemp
 
 from laglab.errors import LaglabError, RunError
 from laglab.extras import STUDYING, require
@@ -51,15 +52,19 @@ def sweep(
     chosen = study if isinstance(study, Study) else load_study(str(study))
     check_size(chosen, limit)
     planned(chosen)
-    temporary = TemporaryDirectory(prefix="laglab-") if out is None else None
-    folder = Folder.made(Path(temporary.name if temporary else str(out)), chosen)
+    if out is None:
+        folder = Folder.made(Path(mkdtemp(prefix="laglab-")), chosen)
+        result = StudyResult.passing(chosen, folder, chosen.origin)
+    else:
+        folder = Folder.made(Path(out), chosen)
+        result = StudyResult(chosen, folder, chosen.origin)
     plan = planned(chosen, folder)
     with (
         progress_of_study(chosen.name, plan.runs, plan.seconds, progress) as told,
         own_processes() if executor is None else nullcontext(executor) as workers,
     ):
         compute(chosen, folder, workers, told)
-    return StudyResult(chosen, folder, chosen.origin, temporary)
+    return result
 
 
 def own_processes(workers: int = 0) -> AbstractContextManager[Processes]:
@@ -88,8 +93,11 @@ def compute(
             contents = future.result()
         except LaglabError:
             raise
-        except Exception as error:  # whatever an executor that is not ours may say
-            raise RunError(f"{study.name}: the workers are lost: {error!r}") from error
+        except (Exception, CancelledError) as error:  # whatever an executor may say
+            raise RunError(
+                f"{study.name}: whoever was to do the rest failed or is gone ({error!r}): what is "
+                "done is kept, and the same command goes on from there"
+            ) from error
         for cell, content in zip(task.cells, contents, strict=True):
             folder.keep(cell, content)
             told(len(cell.seeds), seconds(cell))
