@@ -11,7 +11,7 @@ from laglab.version import code_version
 
 SMALL = """
 scenario = "lab"
-seeds = 2
+seeds = 3
 
 [grid]
 "link.command_delay" = [0, 2, 4, 6, 8, 10, 12, 14]
@@ -20,9 +20,9 @@ seeds = 2
 [start]
 radius = 5.0
 """
-SEEDS = 2
+SEEDS = 3
 CELLS = 16
-DURATION = 2.0
+DURATION = 1.0
 SHORT = ("--set", f"duration={DURATION}")
 
 Contents = dict[str, bytes]
@@ -50,7 +50,7 @@ def contents(folder: Path) -> Contents:
     return {path.name: path.read_bytes() for path in (folder / "cells").iterdir()}
 
 
-def wait_for_cells(folder: Path, count: int, patience: float = 40.0) -> None:
+def wait_for_cells(folder: Path, count: int, patience: float = 90.0) -> None:
     """Until so many are there."""
     deadline = time.monotonic() + patience
     while len(there(folder)) < count:

@@ -126,11 +126,11 @@ def test_a_study_that_was_changed_says_what_is_no_longer_part_of_it(
     with nothing_again(out):
         changed = laglab(*SWEEP)
     assert changed.returncode == 0
-    assert "28 of them had been made before" in changed.stdout
+    assert f"{14 * SEEDS} of them had been made before" in changed.stdout
     assert "2 cells are no longer part of the study" in changed.stderr
     assert "link.command_delay = 14, estimator.kind = popf" in changed.stderr
     assert len(contents(out)) == CELLS
-    assert lab.open_study(out).table.num_rows == 28
+    assert lab.open_study(out).table.num_rows == 14 * SEEDS
 
 
 def test_other_code_computes_anew(out: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -148,9 +148,9 @@ def test_from_python_with_any_executor(tmp_path: Path) -> None:
     with ThreadPoolExecutor(1) as threads:
         result = lab.sweep(study, executor=threads)
     frame = result.to_pandas()
-    assert len(frame) == study.runs == 8
-    assert list(frame["seed"][:4]) == [1, 2, 1, 2]
-    assert list(frame["estimator.kind"][:3]) == ["popf", "popf", "delayed-ekf"]
+    assert len(frame) == study.runs == 12
+    assert list(frame["seed"][:4]) == [1, 2, 3, 1]
+    assert list(frame["estimator.kind"][2:4]) == ["popf", "delayed-ekf"]
     there = result.map("link.command_delay", "estimator.kind", "rms_x")
     assert there.shape == (2, 2)
     some = frame[(frame["link.command_delay"] == 10) & (frame["estimator.kind"] == "popf")]
@@ -173,7 +173,7 @@ def test_from_a_plain_script_processes_of_our_own(tmp_path: Path) -> None:
     ran = subprocess.run(
         [sys.executable, "script.py"], cwd=tmp_path, capture_output=True, text=True, check=False
     )
-    assert ran.stdout == "once\n8\n", ran.stderr
+    assert ran.stdout == "once\n12\n", ran.stderr
 
 
 def test_a_folder_is_read_whatever_the_code_is_by_now(
