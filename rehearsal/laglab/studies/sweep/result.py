@@ -86,11 +86,8 @@ class StudyResult:
                 )
 
 
-def open_study(directory: str | Path) -> StudyResult:
-    """What a sweep left in a folder, whatever code is here by now.
-
-    Raises: NoRunError, StudyError, ScenarioError.
-    """
-    folder = Folder(Path(directory))
+def opened(directory: Path) -> StudyResult:
+    """As `open_study` says."""
+    folder = Folder(directory)
     study, origin = folder.study()
     return StudyResult(study, folder, origin or study.origin)

@@ -8,12 +8,11 @@ from pathlib import Path
 from tempfile import mkdtemp
 
 from laglab.errors import LaglabError, RunError
-from laglab.extras import STUDYING, require
 from laglab.progress import progress_of_study
 from laglab.studies.sweep.cell import Cell
 from laglab.studies.sweep.folder import Folder
 from laglab.studies.sweep.loading import load_study
-from laglab.studies.sweep.plan import MOST_RUNS, check_size, planned
+from laglab.studies.sweep.plan import check_size, planned
 from laglab.studies.sweep.result import StudyResult
 from laglab.studies.sweep.study import Study
 from laglab.studies.sweep.tasks import done, grouped
@@ -24,31 +23,14 @@ AHEAD = 64
 """Tasks that are handed out at once, whether anybody has a hand free or not."""
 
 
-def sweep(
+def swept(
     study: Study | str | Path,
-    executor: Executor | None = None,
-    out: str | Path | None = None,
-    progress: bool = False,
-    *,
-    limit: int = MOST_RUNS,
+    executor: Executor | None,
+    out: str | Path | None,
+    progress: bool,
+    limit: int,
 ) -> StudyResult:
-    """Have a study computed, given itself, by its shipped name or by its file.
-
-    Args:
-        executor: who does the jobs, as those of `concurrent.futures` do; None: processes of our
-            own, one a core, which are gone at the end.
-        out: the folder for the results; what it has of the study already is not computed again.
-            None keeps them in a temporary one, as long as the result is kept.
-        progress: show it on standard error.
-        limit: the most runs that are meant.
-
-    Raises:
-        StudyError, ScenarioError: there is no such study, or it cannot be.
-        PlaceError: the results cannot go there.
-        RunError, ResultsError: something broke on the way; what was done is in `out`.
-        KeyboardInterrupt: Ctrl-C; likewise.
-    """
-    require(STUDYING)
+    """As `sweep` says."""
     chosen = study if isinstance(study, Study) else load_study(str(study))
     check_size(chosen, limit)
     planned(chosen)
