@@ -22,6 +22,7 @@ COMMANDS = {
     "controller": ("controller", *LONG, "--endpoint", "udpout://127.0.0.1:9"),
     "consistency": ("consistency", "lab", "--seeds", "1000"),
     "errata": ("errata", "fig8", "--seeds", "1000"),
+    "sweep": ("sweep", "gains", "--out", "study"),
     "bench": ("bench", "loop", "--rounds", "100"),
     "conform": ("conform", "udpin://127.0.0.1:0", "--side", "robot"),
     "cable": ("serial", "port-1", "port-2"),

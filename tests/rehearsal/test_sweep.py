@@ -30,6 +30,7 @@ from .studying import (
     wait_for_cells,
 )
 
+pytestmark = pytest.mark.timeout(180)
 Laglab = Callable[..., subprocess.CompletedProcess[str]]
 Start = Callable[..., "subprocess.Popen[str]"]
 SWEEP = ("sweep", "small.toml", *SHORT, "--out", "out")

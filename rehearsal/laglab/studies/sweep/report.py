@@ -19,10 +19,11 @@ def summary(study: Study, folder: Folder, plan: Plan) -> str:
         converged += pc.sum(table["converged"]).as_py()
         diverged += table.num_rows - table["diverged_tick"].null_count
     share = f"{converged / runs:.1%}" if runs else "none"
-    lines = [f"{study.name}: {runs} runs: {converged} converged ({share}), {diverged} diverged"]
+    many = "1 run" if runs == 1 else f"{runs} runs"
+    lines = [f"{study.name}: {many}, {converged} converged ({share}), {diverged} diverged"]
     if kept := runs - plan.runs:
         lines.append(f"{kept} of them had been made before")
-    lines += [f"{count} {way}" for way, count in plan.ways.most_common()]
+    lines += [f"{count} made {way}" for way, count in plan.ways.most_common()]
     return "\n".join([*lines, f"tables in {folder.cells}"])
 
 

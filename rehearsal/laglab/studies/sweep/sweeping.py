@@ -19,8 +19,9 @@ from laglab.studies.sweep.tasks import done, grouped
 from laglab.studies.sweep.ways import seconds
 from laglab.studies.workers import Executor, Processes, as_done
 
-AHEAD = 64
-"""Tasks that are handed out at once, whether anybody has a hand free or not."""
+AHEAD = 512
+"""Tasks that are handed out at once: as many as a large cluster has hands, and no more, so that
+memory always has room."""
 
 
 def swept(
