@@ -22,6 +22,7 @@ from laglab.commands import (
     serial,
     sides,
     soak,
+    sweep,
     trust,
 )
 from laglab.commands.group import alone, group
@@ -64,6 +65,7 @@ app.command("consistency")(consistency.consistency)
 app.command("trust")(trust.trust)
 app.command("soak")(soak.soak)
 app.command("errata")(errata.errata)
+app.command("sweep")(sweep.sweep)
 app.command("gateway")(sides.gateway)
 app.command("controller")(sides.controller)
 app.command("serial")(serial.serial)

@@ -23,6 +23,7 @@ COMMANDS = {
     "consistency": ("consistency", "lab", "--seeds", "1000"),
     "errata": ("errata", "fig8", "--seeds", "1000"),
     "soak": ("soak", "--minutes", "10"),
+    "sweep": ("sweep", "gains", "--out", "study"),
     "bench": ("bench", "loop", "--rounds", "100"),
     "conform": ("conform", "udpin://127.0.0.1:0", "--side", "robot"),
     "cable": ("serial", "port-1", "port-2"),

@@ -1,0 +1,86 @@
+"""A study, computed: every cell that is not there yet, by whoever does jobs."""
+
+import os
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
+from contextlib import AbstractContextManager, nullcontext
+from pathlib import Path
+from tempfile import mkdtemp
+
+from laglab.errors import LaglabError, RunError
+from laglab.progress import progress_of_study
+from laglab.studies.sweep.cell import Cell
+from laglab.studies.sweep.folder import Folder
+from laglab.studies.sweep.loading import load_study
+from laglab.studies.sweep.plan import check_size, planned
+from laglab.studies.sweep.result import StudyResult
+from laglab.studies.sweep.study import Study
+from laglab.studies.sweep.tasks import done, grouped
+from laglab.studies.sweep.ways import seconds
+from laglab.studies.workers import Executor, Processes, as_done
+
+AHEAD = 512
+"""Tasks that are handed out at once: as many as a large cluster has hands, and no more, so that
+memory always has room."""
+
+
+def swept(
+    study: Study | str | Path,
+    executor: Executor | None,
+    out: str | Path | None,
+    progress: bool,
+    limit: int,
+) -> StudyResult:
+    """As `sweep` says."""
+    chosen = study if isinstance(study, Study) else load_study(str(study))
+    check_size(chosen, limit)
+    planned(chosen)
+    if out is None:
+        folder = Folder.made(Path(mkdtemp(prefix="laglab-")), chosen)
+        result = StudyResult.passing(chosen, folder, chosen.origin)
+    else:
+        folder = Folder.made(Path(out), chosen)
+        result = StudyResult(chosen, folder, chosen.origin)
+    plan = planned(chosen, folder)
+    with (
+        progress_of_study(chosen.name, plan.runs, plan.seconds, progress) as told,
+        own_processes() if executor is None else nullcontext(executor) as workers,
+    ):
+        compute(chosen, folder, workers, told)
+    return result
+
+
+def own_processes(workers: int = 0) -> AbstractContextManager[Processes]:
+    """So many; 0: one a core."""
+    return Processes(workers or os.cpu_count() or 1)
+
+
+def compute(
+    study: Study,
+    folder: Folder,
+    executor: Executor,
+    told: Callable[[int, float], None],
+    again: bool = False,
+) -> None:
+    """The cells that are not there, or all of them `again`; `told` of each, its runs and cost.
+
+    Raises: RunError, ResultsError. What had been done until then stays.
+    """
+
+    def wanted() -> Iterator[Cell]:
+        """Looked for when it is its turn: somebody else may have computed it meanwhile."""
+        return (cell for cell in study.cells() if again or not folder.has(cell))
+
+    for task, future in as_done(executor, done, grouped(wanted()), AHEAD):
+        try:
+            contents = future.result()
+        except LaglabError:
+            raise
+        except (Exception, CancelledError) as error:  # whatever an executor may say
+            raise RunError(
+                f"{study.name}: whoever was to do the rest failed or is gone ({error!r}): what is "
+                "done is kept, and the same command goes on from there"
+            ) from error
+        for cell, content in zip(task.cells, contents, strict=True):
+            folder.keep(cell, content)
+            told(len(cell.seeds), seconds(cell))
