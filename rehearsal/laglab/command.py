@@ -14,6 +14,7 @@ from laglab.commands import (
     errata,
     estimators,
     fmu,
+    maps,
     protocol,
     replay,
     run,
@@ -61,6 +62,7 @@ app.command("scenario")(scenario.scenario)
 app.command("compare")(compare.compare)
 app.command("consistency")(consistency.consistency)
 app.command("trust")(trust.trust)
+app.command("map")(maps.map_study)
 app.command("errata")(errata.errata)
 app.command("gateway")(sides.gateway)
 app.command("controller")(sides.controller)

@@ -12,13 +12,14 @@ class Need(Enum):
     STEPPING = "gateway", ("fmpy",)
     DRAWING = "run", ("matplotlib",)
     REHEARSING = "run", ("fmpy", "matplotlib")
+    MAPPING = "study", ("matplotlib", "pyarrow")
 
     def __init__(self, extra: str, modules: tuple[str, ...]) -> None:
         self.extra = extra
         self.modules = modules
 
 
-STEPPING, DRAWING, REHEARSING = Need
+STEPPING, DRAWING, REHEARSING, MAPPING = Need
 
 
 def require(need: Need) -> None:
