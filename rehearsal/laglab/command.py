@@ -17,6 +17,7 @@ from laglab.commands import (
     maps,
     protocol,
     replay,
+    reproduce,
     run,
     scenario,
     scenarios,
@@ -63,6 +64,7 @@ app.command("compare")(compare.compare)
 app.command("consistency")(consistency.consistency)
 app.command("trust")(trust.trust)
 app.command("map")(maps.map_study)
+app.command("reproduce")(reproduce.reproduce)
 app.command("errata")(errata.errata)
 app.command("gateway")(sides.gateway)
 app.command("controller")(sides.controller)

@@ -7,6 +7,7 @@ from itertools import cycle
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from laglab.results.figure import empty_figure
 from laglab.scenario import Scenario
@@ -35,6 +36,8 @@ def draw_lines(by: Layout, into: Sorted, maps: Sequence[Map], base: Scenario | N
             _mark_margin(axes, base, by.x)
     if panels[0].get_legend_handles_labels()[0]:
         panels[0].legend(fontsize="small")
+    if _is_wide(np.array(into.x) if isinstance(into.x[0], int | float) else np.zeros(0)):
+        panels[-1].set_xscale("log")
     panels[-1].set_xlabel(key_label(by.x))
     return figure
 
@@ -66,8 +69,12 @@ def _scale(axes: Axes, each: Map) -> None:
     known = np.concatenate([field.centre[np.isfinite(field.centre)] for field in each.fields])
     if each.of.share:
         axes.set_ylim(-0.03, 1.03)
-    elif len(known) and known.min() > 0 and known.max() > WIDE * known.min():
+    elif _is_wide(known):
         axes.set_yscale("log")
+
+
+def _is_wide(values: NDArray[np.float64]) -> bool:
+    return len(values) > 0 and 0 < WIDE * values.min() < values.max()
 
 
 def _mark_margin(axes: Axes, base: Scenario, x: str) -> None:
