@@ -23,6 +23,7 @@ from laglab.commands import (
     scenarios,
     serial,
     sides,
+    sweep,
     trust,
 )
 from laglab.commands.group import alone, group
@@ -66,6 +67,7 @@ app.command("trust")(trust.trust)
 app.command("map")(maps.map_study)
 app.command("reproduce")(reproduce.reproduce)
 app.command("errata")(errata.errata)
+app.command("sweep")(sweep.sweep)
 app.command("gateway")(sides.gateway)
 app.command("controller")(sides.controller)
 app.command("serial")(serial.serial)

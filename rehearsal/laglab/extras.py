@@ -13,13 +13,15 @@ class Need(Enum):
     DRAWING = "run", ("matplotlib",)
     REHEARSING = "run", ("fmpy", "matplotlib")
     MAPPING = "study", ("matplotlib", "pyarrow")
+    STUDYING = "study", ("fmpy", "pyarrow", "pandas")
+    SPREADING = "study", ("distributed",)
 
     def __init__(self, extra: str, modules: tuple[str, ...]) -> None:
         self.extra = extra
         self.modules = modules
 
 
-STEPPING, DRAWING, REHEARSING, MAPPING = Need
+STEPPING, DRAWING, REHEARSING, MAPPING, STUDYING, SPREADING = Need
 
 
 def require(need: Need) -> None:
