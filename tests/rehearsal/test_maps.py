@@ -5,19 +5,20 @@ from pathlib import Path
 
 import numpy as np
 import pandas
-import pyarrow
 import pytest
 from matplotlib import colormaps
-from pyarrow import parquet
 
 from laglab.command import main
 from laglab.errors import StudyError
 from laglab.scenario import load
 from laglab.studies.maps import draw_study, runs_of
+from laglab.studies.maps.drawing import margins
 from laglab.studies.maps.grid import fields, sorted_into
 from laglab.studies.maps.margin import excess
 from laglab.studies.maps.measures import Told, median, share
 from laglab.studies.maps.runs import Layout, layout
+from laglab.studies.sweep.folder import Folder
+from laglab.studies.sweep.study import Study
 
 N, M, KIND = "link.command_delay", "link.measurement_delay", "estimator.kind"
 GRID = {N: [0, 10, 20], M: [0, 20], KIND: ["raw", "popf"]}
@@ -49,14 +50,14 @@ def study(grid: dict[str, list[object]] = GRID, base: str | None = "fig4"):
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A study's, a cell a file."""
-    place = tmp_path / "study"
-    (place / "cells").mkdir(parents=True)
-    grid = "\n".join(f'"{key}" = {values}' for key, values in GRID.items())
-    (place / "study.toml").write_text(f'scenario = "fig4"\n[grid]\n{grid}\n')
-    for number, (_, cell) in enumerate(table(GRID).groupby([N, M, KIND])):
-        parquet.write_table(pyarrow.Table.from_pandas(cell), place / f"cells/{number}.parquet")
-    return place
+    """A study's, as a sweep leaves it."""
+    grid = {key: tuple(values) for key, values in GRID.items()}
+    study = Study(load("fig4"), SEEDS, grid, name="study")
+    made = Folder.made(tmp_path / "study", study)
+    for cell in study.cells():
+        content = pandas.DataFrame([row(dict(cell.grid), seed) for seed in cell.seeds])
+        content.astype({"diverged_tick": float}).to_parquet(made.file(cell))
+    return made.path
 
 
 def failed(*arguments: object) -> int:
@@ -119,6 +120,19 @@ def test_the_margin_goes_between_what_settles_and_what_does_not():
     ]
 
 
+def test_each_panel_has_the_margin_of_its_own_gains():
+    runs = study({N: [0, 5, 10], M: [0, 5, 10], "law.h": [1.0, 3.0]})
+    chosen = layout(runs)
+    first, second = margins(runs, chosen, sorted_into(runs, chosen))
+    assert (first.excess.approach < 0).sum() > (second.excess.approach < 0).sum() > 0
+
+
+def test_where_a_cell_has_several_margins_none_is_drawn():
+    runs = study({N: [0, 5, 10], KIND: ["raw", "popf"], M: [0, 5, 10]})
+    chosen = Layout(N, KIND, None, (M,))
+    assert margins(runs, chosen, sorted_into(runs, chosen)) == []
+
+
 def test_the_scale_is_told_apart_without_colour():
     """Perceived lightness only rises, and black and white ink stand out on either half."""
     red, green, blue, _ = colormaps["cividis"](np.linspace(0, 1, 256)).T
@@ -169,16 +183,35 @@ def test_what_cannot_be_drawn_is_one_line(folder, options, said, capsys):
     assert said in capsys.readouterr().err
 
 
-def test_a_folder_that_is_no_studys_is_one_line(folder, tmp_path, capsys):
+def test_what_is_foreign_is_not_looked_at(folder, tmp_path):
+    pandas.DataFrame({"a": [1]}).to_parquet(folder / "cells" / "foreign.parquet")
+    assert failed("map", folder, "--out", tmp_path / "map.png") == 0
+
+
+def test_a_folder_with_nothing_to_draw_is_one_line(folder, tmp_path, capsys):
     assert failed("map", tmp_path) == 2
-    assert "not a study's folder" in capsys.readouterr().err
-    parquet.write_table(pyarrow.table({"a": [1]}), folder / "cells" / "foreign.parquet")
+    assert "study.toml cannot be read" in capsys.readouterr().err
+    first, *others = (folder / "cells").iterdir()
+    first.write_bytes(b"nonsense")
     assert failed("map", folder) == 2
-    assert "foreign.parquet is not a cell of this study" in capsys.readouterr().err
-    (folder / "cells" / "foreign.parquet").write_bytes(b"nonsense")
-    assert failed("map", folder) == 2
-    assert "foreign.parquet is not a Parquet file" in capsys.readouterr().err
-    for file in (folder / "cells").iterdir():
+    assert f"{first.name} cannot be read" in capsys.readouterr().err
+    for file in (first, *others):
         file.unlink()
     assert failed("map", folder) == 2
-    assert "no cell of this study has been computed yet" in capsys.readouterr().err
+    assert "no cell of this study has been computed" in capsys.readouterr().err
+
+
+def test_a_cell_without_our_columns_is_one_line(folder, capsys):
+    for file in (folder / "cells").iterdir():
+        pandas.DataFrame({"a": [1]}).to_parquet(file)
+    assert failed("map", folder) == 2
+    assert "what is not a cell of this study: it has no column" in capsys.readouterr().err
+
+
+def test_by_default_is_drawn_what_says_something():
+    labels = [axes.get_ylabel() for axes in draw_study(study()).axes]
+    assert any("diverged" in label for label in labels)
+    healthy = study({N: [0, 10], M: [0, 5]})
+    labels = [axes.get_ylabel() for axes in draw_study(healthy).axes]
+    assert not any("diverged" in label for label in labels)
+    assert any("settling" in label for label in labels)

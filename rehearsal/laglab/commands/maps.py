@@ -7,7 +7,7 @@ import typer
 
 from laglab.extras import MAPPING, require
 from laglab.results.figure import picture_place, save
-from laglab.studies.maps import MEASURES, draw_study, read_runs
+from laglab.studies.maps import draw_study, read_runs
 
 
 def map_study(
@@ -18,7 +18,7 @@ def map_study(
         list[str] | None,
         typer.Option(
             metavar="COLUMN",
-            help="What is drawn; may be repeated. By default converged, rms_x and settled_s.",
+            help="What is drawn; may be repeated. converged, rms_x and others by default.",
         ),
     ] = None,
     out: Annotated[
@@ -31,5 +31,5 @@ def map_study(
     """
     require(MAPPING)
     picture_place(out)
-    save(draw_study(read_runs(folder), value or MEASURES, x, y), out)
+    save(draw_study(read_runs(folder), value or (), x, y), out)
     print(out)

@@ -60,8 +60,8 @@ class Look(NamedTuple):
         return "black" if 0.3 * red + 0.59 * green + 0.11 * blue > HALF else "white"
 
 
-def draw_maps(by: Layout, into: Sorted, maps: Sequence[Map], margin: Plane | None) -> Figure:
-    """A row each; `by.y` is there."""
+def draw_maps(by: Layout, into: Sorted, maps: Sequence[Map], margins: Sequence[Plane]) -> Figure:
+    """A row each; `by.y` is there. `margins` are one a panel, or none."""
     from matplotlib.cm import ScalarMappable
 
     width = min(max(len(into.x) * CELL[0], LEAST), MOST)
@@ -73,13 +73,13 @@ def draw_maps(by: Layout, into: Sorted, maps: Sequence[Map], margin: Plane | Non
         look = _look(each, written)
         for axes, field in zip(row, each.fields, strict=True):
             _draw(axes, field, look)
-            if margin is not None:
-                draw_border(axes, margin)
+        for axes, margin in zip(row, margins, strict=False):
+            draw_border(axes, margin)
         colours = ScalarMappable(look.scale, look.colours)
         figure.colorbar(colours, ax=list(row), label=each.of.label, pad=0.01, aspect=15)
     _name(grid, by, into)
     dotted = not written and any(each.of.share for each in maps)
-    explain(figure, [field for each in maps for field in each.fields], margin, dotted)
+    explain(figure, [field for each in maps for field in each.fields], margins, dotted)
     return figure
 
 
@@ -98,7 +98,7 @@ def _look(each: Map, written: bool) -> Look:
     """One for all panels; of what is an error or a time, small is good and so bright."""
     from matplotlib import colormaps
 
-    colours = colormaps["cividis" if each.of.share else "cividis_r"]
+    colours = colormaps["cividis" if each.of.share and not each.of.bad else "cividis_r"]
     return Look(each.of, _scale(each), colours, written)
 
 

@@ -15,6 +15,8 @@ NAMES = {
     "law.gamma": "gain γ [1/s]",
     "link.command.loss": "loss of commands",
     "link.measurement.loss": "loss of measurements",
+    "link.command.extra_delay.mean": "jitter of commands, mean [s]",
+    "link.measurement.extra_delay.mean": "jitter of measurements, mean [s]",
 }
 MOST_TICKS = 12
 """Labels along one side."""
@@ -27,6 +29,8 @@ def key_label(key: str) -> str:
 
 def value_label(value: object) -> str:
     """Of one value."""
+    if isinstance(value, bool):
+        return "on" if value else "off"
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 

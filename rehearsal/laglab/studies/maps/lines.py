@@ -36,14 +36,14 @@ def draw_lines(by: Layout, into: Sorted, maps: Sequence[Map], base: Scenario | N
             _mark_margin(axes, base, by.x)
     if panels[0].get_legend_handles_labels()[0]:
         panels[0].legend(fontsize="small")
-    if _is_wide(np.array(into.x) if isinstance(into.x[0], int | float) else np.zeros(0)):
+    if all(map(_is_number, into.x)) and _is_wide(np.array(into.x, dtype=float)):
         panels[-1].set_xscale("log")
     panels[-1].set_xlabel(key_label(by.x))
     return figure
 
 
 def _draw(axes: Axes, by: Layout, into: Sorted, each: Map) -> None:
-    numeric = all(isinstance(value, int | float) for value in into.x)
+    numeric = all(map(_is_number, into.x))
     places = np.array(into.x if numeric else range(len(into.x)), dtype=float)
     if not numeric:
         axes.set_xticks(places, [value_label(value) for value in into.x])
@@ -71,6 +71,10 @@ def _scale(axes: Axes, each: Map) -> None:
         axes.set_ylim(-0.03, 1.03)
     elif _is_wide(known):
         axes.set_yscale("log")
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _is_wide(values: NDArray[np.float64]) -> bool:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from laglab.studies.maps.grid import Field
 from laglab.studies.maps.margin import Plane
@@ -48,10 +49,15 @@ def hatch_diverged(axes: Axes, field: Field) -> None:
             )
 
 
+def _crosses(excess: NDArray[np.float64]) -> bool:
+    """Whether the border goes through the map."""
+    return bool(np.nanmin(excess, initial=0) < 0 < np.nanmax(excess, initial=0))
+
+
 def draw_border(axes: Axes, margin: Plane) -> None:
     """Black on a white edge, so that it shows on every ground."""
     for excess, line in zip(margin.excess, LINES.values(), strict=True):
-        if np.nanmin(excess, initial=0) < 0 < np.nanmax(excess, initial=0):
+        if _crosses(excess):
             for color, width in (("white", 2.8), ("black", 1.4)):
                 axes.contour(
                     margin.x,
@@ -64,18 +70,18 @@ def draw_border(axes: Axes, margin: Plane) -> None:
                 )
 
 
-def explain(figure: Figure, fields: Sequence[Field], margin: Plane | None, dotted: bool) -> None:
+def explain(
+    figure: Figure, fields: Sequence[Field], margins: Sequence[Plane], dotted: bool
+) -> None:
     """A legend of the marks that there are, below the maps."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    handles: list[Artist] = []
-    if margin is not None:
-        handles += [
-            Line2D([], [], color="black", linestyle=line.style, label=line.label)
-            for excess, line in zip(margin.excess, LINES.values(), strict=True)
-            if np.nanmin(excess, initial=0) < 0 < np.nanmax(excess, initial=0)
-        ]
+    handles: list[Artist] = [
+        Line2D([], [], color="black", linestyle=line.style, label=line.label)
+        for number, line in enumerate(LINES.values())
+        if any(_crosses(margin.excess[number]) for margin in margins)
+    ]
     diverged = np.concatenate([field.diverged.ravel() for field in fields])
     if ((diverged > 0) & (diverged < 1)).any():
         handles.append(Patch(fc="none", ec=GREY, hatch=SOME, label="some estimates diverged"))

@@ -23,6 +23,8 @@ class Measure(NamedTuple):
     label: str
     share: bool = False
     """Yes or no, told as the share of yes; else as the median."""
+    bad: bool = False
+    """Whether yes is bad."""
     factor: float = 1.0
     """From the column's unit to the label's."""
 
@@ -30,6 +32,7 @@ class Measure(NamedTuple):
 OF_RUNS = "median of the runs"
 KNOWN = (
     Measure("converged", "share of the runs\nthat converged", share=True),
+    Measure("diverged", "share of the runs\nwhose estimate diverged", share=True, bad=True),
     Measure("settled_s", "settling time [s]\nmedian of those that settle"),
     Measure("rms_x", f"RMS error in x [mm]\n{OF_RUNS}", factor=1e3),
     Measure("rms_y", f"RMS error in y [mm]\n{OF_RUNS}", factor=1e3),
@@ -99,14 +102,19 @@ class Told(NamedTuple):
 
     @classmethod
     def by(cls, runs: StudyRuns, column: str) -> Told:
-        """A column's. Raises: StudyError, when there is none, or it has no numbers."""
+        """A column's; `diverged` needs none. Raises: StudyError, when there is none, or it has no
+        numbers."""
+        of, diverged = measure(column), runs.diverged
+        if column == "diverged":
+            return cls(of, diverged.astype(np.float64), diverged)
         values = runs.number(column)
         values[np.abs(values) < EXACT] = 0.0
-        diverged = np.zeros(len(values), dtype=bool)
-        if "diverged_tick" in runs.columns:
-            diverged = ~np.isnan(runs.number("diverged_tick"))
-        of = measure(column)
         return cls(of, values * of.factor, diverged)
+
+    @property
+    def says_something(self) -> bool:
+        """Whether there is anything to see."""
+        return bool(np.nan_to_num(self.values).any())
 
     def summed(self, chosen: NDArray[np.intp]) -> Summed:
         """Of the runs with these numbers. One whose estimate diverged has no part in a median."""

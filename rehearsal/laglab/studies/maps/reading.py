@@ -2,7 +2,10 @@
 
 from pathlib import Path
 
+from laglab.errors import NoRunError
 from laglab.studies.maps.runs import StudyRuns, runs_of
+
+OURS = ("converged", "seed")
 
 
 def read_runs(folder: Path) -> StudyRuns:
@@ -10,9 +13,15 @@ def read_runs(folder: Path) -> StudyRuns:
 
     Raises: NoRunError, StudyError, ScenarioError.
     """
-    from laglab.studies.sweep.result import open_study  # whoever draws nothing does without
+    from laglab.studies.sweep.compute import column_value  # whoever draws nothing does without
+    from laglab.studies.sweep.result import open_study
 
     result = open_study(folder)
     table = result.table
+    if missing := {*result.study.grid, *OURS} - {*table.column_names}:
+        raise NoRunError(
+            f"{folder} holds what is not a cell of this study: it has no column {min(missing)!r}"
+        )
     columns = {name: table[name].to_numpy() for name in table.column_names}
-    return runs_of(columns, result.study.grid, folder.resolve().name, result.study.scenario)
+    grid = {key: [column_value(v) for v in values] for key, values in result.study.grid.items()}
+    return runs_of(columns, grid, folder.resolve().name, result.study.scenario)

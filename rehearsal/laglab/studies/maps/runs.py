@@ -38,6 +38,14 @@ class StudyRuns(NamedTuple):
         """Whether its values can be put on a scale."""
         return self.columns[key].dtype.kind in "iuf"
 
+    @property
+    def diverged(self) -> NDArray[np.bool_]:
+        """Of every run, whether its estimate did."""
+        if "diverged_tick" not in self.columns:
+            return np.zeros(len(next(iter(self.columns.values()))), dtype=bool)
+        there: NDArray[np.bool_] = ~np.isnan(self.number("diverged_tick"))
+        return there
+
     def number(self, column: str) -> NDArray[np.float64]:
         """A column of results, NaN for nothing. Raises: StudyError, when it has no numbers."""
         try:

@@ -10,7 +10,7 @@ import numpy as np
 from laglab.scenario import Overrides
 from laglab.studies.maps import draw_study
 from laglab.studies.reproduce.claim import Claim, Evidence
-from laglab.studies.reproduce.showing import P_0, M, N, diverged, on_grid, png
+from laglab.studies.reproduce.showing import P_0, M, N, on_grid, png
 
 DELAYS = (0, 10, 25, 50)
 STARTS = 3
@@ -30,7 +30,7 @@ def starts_and_delays(name: str, overrides: Overrides) -> Evidence:
     numbers = {
         "runs": float(len(converged)),
         "converged": float(converged.sum()),
-        "diverged": float(diverged(runs).sum()),
+        "diverged": float(runs.diverged.sum()),
         "rho": float(runs.number("final_rho").max()),
         "omega": float(np.median(runs.number("max_omega"))),
     }
@@ -47,7 +47,7 @@ def noisy() -> Evidence:
 def priors(of: Sequence[float]) -> Evidence:
     """The loop of Fig. 8, with a goal tolerance, over P_0."""
     runs = on_grid("popf, noise, goal tolerance", "fig8", {P_0: of}, SEEDS, TOLERANT, None)
-    lost, p0 = diverged(runs), runs.columns[P_0]
+    lost, p0 = runs.diverged, runs.columns[P_0]
     shares = {prior: float(lost[p0 == prior].mean()) for prior in of}
     numbers = {
         "least": shares[of[0]],
@@ -56,7 +56,7 @@ def priors(of: Sequence[float]) -> Evidence:
         "all_lost": min((prior for prior in of if shares[prior] == 1), default=np.inf),
         "seeds": SEEDS,
     }
-    return Evidence(numbers, png(draw_study(runs, ["converged", "rms_x"])))
+    return Evidence(numbers, png(draw_study(runs, ["diverged", "rms_x"])))
 
 
 CLAIMS = (

@@ -57,9 +57,3 @@ def on_grid(
         columns[key] = np.repeat([cell.grid[key] for cell in cells], seeds)
     columns["seed"] = np.tile(study.seeds, len(cells))
     return runs_of(columns, grid, name, base)
-
-
-def diverged(runs: StudyRuns) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Of every run, whether its estimate did."""
-    of: np.ndarray[tuple[int], np.dtype[np.bool_]] = ~np.isnan(runs.number("diverged_tick"))
-    return of
