@@ -87,8 +87,8 @@ CLAIMS = (
         command="laglab run fig5",
         experiment=with_and_without_limits,
         got="With v limited to 2 m/s and ω to 1.7 rad/s ρ is below {rho:.2g} m in the last second, "
-        "|θ| still reaches {theta:.2g} rad, and ω is at {omega:.2g} rad/s. Without limits the "
-        "robot diverges, at {fastest:.0e} m/s.",
+        "|θ| still reaches {theta:.2g} rad, and |ω| is at {omega:.2g} rad/s, to either side. "
+        "Without limits the robot diverges, at {fastest:.0e} m/s.",
         holds=lambda n: n["fastest"] < ENDLESS,
         nearly=lambda n: n["rho"] < 0.5 and n["theta"] > 0.5 and abs(n["omega"] - 1.7) < 0.1,
         provided="limits of about 2 m/s and 1.7 rad/s, which the paper does not mention",
