@@ -24,7 +24,7 @@ def reproduce(
     ] = None,
     workers: Annotated[int, typer.Option(min=0, max=256, help="Processes; 0: one a core.")] = 0,
 ) -> None:
-    """Try every figure and claim of the paper, and write down which of them hold.
+    """Try every figure and claim of the paper, and say which hold.
 
     The report is one page with everything in it, and the same as Markdown with its pictures.
     """

@@ -11,7 +11,7 @@ from laglab.scenario import load
 from laglab.studies.reproduce.claim import Claim, Evidence
 from laglab.studies.reproduce.showing import N, on_grid, png
 from laglab_control import Law, delay_margin
-from laglab_fmu import Robot, RobotParameters
+from laglab_fmu import RobotParameters
 
 STARTS = 12
 ONE_SECOND = 100
@@ -20,6 +20,8 @@ DELAYS = range(15)
 
 def right_wheel_alone() -> Evidence:
     """It turns by 1 rad/s for a second, the left one stands."""
+    from laglab_fmu import Robot  # loads FMPy
+
     robot = RobotParameters(noise=False)
     with Robot.open(3, robot) as body:
         for _ in range(ONE_SECOND):
