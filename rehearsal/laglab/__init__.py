@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from laglab.results.run import Run, open_run
     from laglab.results.summary import Summary
     from laglab.scenario import Scenario, load
+    from laglab.studies.sweep.interface import open_study, sweep
     from laglab.studies.sweep.loading import load_study
-    from laglab.studies.sweep.result import StudyResult, open_study
+    from laglab.studies.sweep.result import StudyResult
     from laglab.studies.sweep.study import Study
-    from laglab.studies.sweep.sweeping import sweep
 
     __version__: str
 
@@ -47,8 +47,8 @@ _HOMES = {
     "Study": "studies.sweep.study",
     "StudyResult": "studies.sweep.result",
     "load_study": "studies.sweep.loading",
-    "open_study": "studies.sweep.result",
-    "sweep": "studies.sweep.sweeping",
+    "open_study": "studies.sweep.interface",
+    "sweep": "studies.sweep.interface",
 }
 
 __all__ = [

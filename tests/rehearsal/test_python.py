@@ -16,12 +16,23 @@ import pytest
 
 import laglab
 
-PAGE = Path(__file__).parents[2] / "docs" / "python.md"
-BLOCKS = re.findall(r"^```python\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.DOTALL | re.M)
+DOCS = Path(__file__).parents[2] / "docs"
+PAGES = [(DOCS / name).read_text(encoding="utf-8") for name in ("python.md", "studies.md")]
+BLOCKS = re.findall(r"^```python\n(.*?)^```", "\n".join(PAGES), re.DOTALL | re.M)
 
 
 def test_import_is_light() -> None:
-    heavy = "numpy", "pydantic", "matplotlib", "serial", "pymavlink", "typer", "fmpy", "pandas"
+    heavy = (
+        "numpy",
+        "pydantic",
+        "matplotlib",
+        "serial",
+        "pymavlink",
+        "typer",
+        "fmpy",
+        "pandas",
+        "pyarrow",
+    )
     script = f"import sys, laglab; print([name for name in {heavy} if name in sys.modules])"
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True
@@ -39,7 +50,7 @@ def test_the_mathematics_load_numpy_and_little_else() -> None:
 
 
 def test_a_plain_script_needs_no_guard_and_prints_nothing_of_ours(tmp_path: Path) -> None:
-    """The blocks of the page one after the other, then runs over UDP and a pty."""
+    """The blocks of the pages one after the other, then runs over UDP and a pty."""
     script = tmp_path / "plain.py"
     more = 'for way in ("udp", "serial"):\n    laglab.run("fig6", {"duration": 0.5}, way)\n'
     script.write_text("\n".join([*BLOCKS, "print('the end of the page')", more]), encoding="utf-8")

@@ -125,7 +125,7 @@ def _given_up(asked: _Asked, how: str) -> bool:
     asked.deaths += 1
     if asked.deaths < MOST_DEATHS:
         return False
-    asked.future.set_exception(RunError(f"{how}, the {asked.deaths}rd at the same job"))
+    asked.future.set_exception(RunError(f"{how}, three times at the same job"))
     return True
 
 

@@ -1,17 +1,21 @@
 """Workers on a dask.distributed cluster: somebody's, or one of our own."""
 
+import asyncio
 import logging
 import os
+import socket
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from typing import Any
+from urllib.parse import urlsplit
 
 from laglab.errors import RefusedError
 from laglab.extras import SPREADING, require
 from laglab.studies.workers import Executor
 
 OURS = "local"
-PATIENCE = 10.0
+SCHEMES = ("tcp", "tls")
+PATIENCE = 5.0
 """[s] A scheduler that has not answered by then is not there."""
 
 
@@ -24,19 +28,49 @@ def cluster(address: str, workers: int = 0) -> Iterator[Executor]:
     require(SPREADING)
     import distributed
 
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # we say ourselves what breaks
+    for name in ("distributed", "distributed.client"):  # we say ourselves what breaks
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     with ExitStack() as stack:
         if address == OURS:
             address = stack.enter_context(_own(workers)).scheduler_address
+        else:
+            _look_for(address)
         try:
             client = distributed.Client(address, timeout=PATIENCE, set_as_default=False)
         except (OSError, ValueError) as error:
-            raise RefusedError(
-                f"--scheduler {address}: no dask scheduler answers there: start one with `dask "
-                "scheduler`, or say --scheduler local"
-            ) from error
+            raise _nobody(address) from error
         stack.enter_context(client)
         yield client.get_executor(pure=False)
+
+
+def _look_for(address: str) -> None:
+    """Whether a scheduler is there; where nobody listens, dask itself would try again and again."""
+    parts = urlsplit(address)
+    try:
+        if parts.scheme not in SCHEMES or not parts.hostname or not parts.port:
+            raise RefusedError(
+                f"--scheduler {address}: must be `local` or tcp://HOST:PORT, as `dask scheduler` "
+                "tells it"
+            )
+        socket.create_connection((parts.hostname, parts.port), PATIENCE).close()
+        asyncio.run(asyncio.wait_for(_greet(address), PATIENCE))
+    except (OSError, ValueError, TimeoutError) as error:
+        raise _nobody(address) from error
+
+
+async def _greet(address: str) -> None:
+    """To somebody else, who listens there, `Client` would talk for ever."""
+    from distributed.comm.core import connect
+
+    comm = await connect(address, timeout=PATIENCE)
+    await comm.close()
+
+
+def _nobody(address: str) -> RefusedError:
+    return RefusedError(
+        f"--scheduler {address}: no dask scheduler answers there: start one with `dask scheduler`, "
+        "or say --scheduler local"
+    )
 
 
 def _own(workers: int) -> Any:

@@ -9,24 +9,27 @@ import tomlkit
 from pydantic import Field, ValidationError, model_validator
 
 from laglab.errors import StudyError
-from laglab.scenario import Overrides, Scenario, changed, load
+from laglab.scenario import Overrides, Scenario, changed, load, shipped_names
 from laglab.scenario.loading import made_of
 from laglab.scenario.model import plain
 from laglab.scenario.tables.table import Table
 from laglab.scenario.toml import parsed
-from laglab.studies.sweep.study import Study, axis
+from laglab.studies.sweep.study import Study
+from laglab_control import FAR
 from laglab_gateway.values import Positive, Whole, saying, wording
 
 SHIPPED = resources.files("laglab.studies.sweep") / "shipped"
 Seed = Annotated[Whole, Field(ge=0, lt=2**31)]
 Seeds = Annotated[
     Annotated[Whole, Field(ge=1, lt=2**31)] | Annotated[list[Seed], Field(min_length=1)],
-    saying("how many, 1 or more, or a list of seeds, each a whole number below 2^31"),
+    saying(
+        "a number of seeds, 1 or more, or a list of seeds, each whole, 0 or more and below 2^31"
+    ),
 ]
 
 
 class _Start(Table):
-    radius: Positive
+    radius: Annotated[Positive, Field(le=FAR)]
 
 
 class _File(Table):
@@ -85,14 +88,8 @@ def study_of(
 
 
 def _made(file: _File, path: Path, overrides: Overrides, seeds: int | None) -> Study:
-    grid = dict(_axes(file.grid))
-    if "seed" in grid:
-        raise StudyError("grid: seed: the seeds of a study are said by `seeds`")
-    if file.start is not None and any(key.split(".")[0] == "start" for key in grid):
-        raise StudyError("grid: start: [start] gives every seed a start of its own: leave one out")
+    grid = {key: _anchored(key, values, path.parent) for key, values in _axes(file.grid)}
     chosen = file.seeds if seeds is None else seeds
-    if not isinstance(chosen, int) and len(set(chosen)) < len(chosen):
-        raise StudyError("seeds: must have each seed once")
     return Study(
         scenario=changed(_base(file, path), overrides),
         seeds=range(1, chosen + 1) if isinstance(chosen, int) else tuple(chosen),
@@ -108,18 +105,26 @@ def _base(file: _File, path: Path) -> Scenario:
     if not isinstance(file.scenario, str):
         return made_of({"name": path.stem} | file.scenario, path.parent)
     beside = path.parent / file.scenario
-    return load(str(beside) if beside.is_file() else file.scenario)
+    shipped = file.scenario in shipped_names()
+    return load(str(beside) if not shipped and beside.is_file() else file.scenario)
 
 
-def _axes(table: dict[str, Any], above: str = "") -> Iterator[tuple[str, tuple[object, ...]]]:
+def _axes(table: dict[str, Any], above: str = "") -> Iterator[tuple[str, list[object]]]:
     """Dotted keys may be written as such, in quotation marks, or as tables."""
     for key, value in table.items():
         if isinstance(value, dict):
             yield from _axes(value, f"{above}{key}.")
         elif isinstance(value, list):
-            yield above + key, axis(above + key, value)
+            yield above + key, value
         else:
             raise StudyError(f"grid: {above}{key}: must be a list of values, not {value!r}")
+
+
+def _anchored(key: str, values: list[object], folder: Path) -> list[object]:
+    """Paths are relative to the study's file."""
+    if key != "link.replay":
+        return values
+    return [str((folder / str(value)).resolve()) for value in values]
 
 
 def to_toml(study: Study, origin: str) -> str:

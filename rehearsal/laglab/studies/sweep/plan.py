@@ -1,16 +1,18 @@
 """What a study asks for: known, and checked, before anything runs."""
 
 from collections import Counter
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from pydantic import ValidationError
 
 from laglab.errors import ScenarioError, StudyError
 from laglab.scenario.problems import first_problem
 from laglab.studies.sweep.cell import Cell
-from laglab.studies.sweep.folder import Folder
 from laglab.studies.sweep.study import Study
 from laglab.studies.sweep.ways import How, how, seconds
+
+if TYPE_CHECKING:
+    from laglab.studies.sweep.folder import Folder
 
 MOST_RUNS = 1_000_000
 """More than that are run only when somebody says that they are meant."""
@@ -30,7 +32,7 @@ class Plan(NamedTuple):
         return self.ways.total()
 
 
-def planned(study: Study, folder: Folder | None = None) -> Plan:
+def planned(study: Study, folder: "Folder | None" = None) -> Plan:
     """Of the study's cells, those that are not in the folder. Raises StudyError: a cell's scenario,
     wherever it is, cannot be."""
     ways: Counter[How] = Counter()

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import shutil
+import weakref
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import pyarrow as pa
@@ -25,8 +26,13 @@ class StudyResult:
     study: Study
     folder: Folder
     origin: str
-    _temporary: TemporaryDirectory[str] | None = None
-    """Goes when we go."""
+
+    @classmethod
+    def passing(cls, study: Study, folder: Folder, origin: str) -> StudyResult:
+        """One whose folder goes when it goes."""
+        result = cls(study, folder, origin)
+        weakref.finalize(result, shutil.rmtree, folder.path, ignore_errors=True)
+        return result
 
     @property
     def directory(self) -> Path:
@@ -80,11 +86,8 @@ class StudyResult:
                 )
 
 
-def open_study(directory: str | Path) -> StudyResult:
-    """What a sweep left in a folder, whatever code is here by now.
-
-    Raises: NoRunError, StudyError, ScenarioError.
-    """
-    folder = Folder(Path(directory))
+def opened(directory: Path) -> StudyResult:
+    """As `open_study` says."""
+    folder = Folder(directory)
     study, origin = folder.study()
     return StudyResult(study, folder, origin or study.origin)

@@ -4,7 +4,7 @@ import hashlib
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import islice, product
 from pathlib import Path
@@ -14,6 +14,7 @@ from laglab.scenario import Scenario, changed
 from laglab.scenario.explain import spelled
 from laglab.studies.sweep.cell import Cell
 from laglab.version import code_version
+from laglab_control import FAR
 
 MOST_SEEDS = 250
 """Of one cell: as many runs as are one task, with or without a batch."""
@@ -23,17 +24,33 @@ MOST_SEEDS = 250
 class Study:
     """A scenario, over the product of the grid's values and over seeds.
 
-    Whether the cells' scenarios can be, `planned` says.
+    Raises StudyError, when something in it cannot be. Whether the cells' scenarios can be, is not
+    known before `planned` has tried.
     """
 
     scenario: Scenario
     seeds: Sequence[int]
-    grid: Mapping[str, tuple[object, ...]]
+    grid: Mapping[str, Sequence[object]] = field(default_factory=dict)
     """Dotted scenario key → its values."""
     radius: float | None = None
     """[m] Every seed starts within it, about the goal; None: where the scenario says."""
     name: str = "study"
     description: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "grid", {key: _axis(key, self.grid[key]) for key in self.grid})
+        if "seed" in self.grid:
+            raise StudyError("grid: seed: the seeds of a study are said by `seeds`")
+        if self.radius is not None and any(key.split(".")[0] == "start" for key in self.grid):
+            raise StudyError(
+                "grid: start: [start] gives every seed a start of its own: leave one out"
+            )
+        if self.radius is not None and not 0 < self.radius <= FAR:
+            raise StudyError(f"start.radius: must be above 0, and {FAR:g} or less")
+        if not isinstance(self.seeds, range) and len(set(self.seeds)) < len(self.seeds):
+            raise StudyError("seeds: must have each seed once")
+        if not self.seeds:
+            raise StudyError("seeds: must have a seed at least")
 
     @property
     def points(self) -> int:
@@ -97,12 +114,12 @@ class Study:
         return len(self.seeds) if counted else list(self.seeds)
 
 
-def axis(key: str, values: Sequence[object]) -> tuple[object, ...]:
+def _axis(key: str, values: Sequence[object]) -> tuple[object, ...]:
     """The values of one key; numbers all of one kind, so that they make a column.
 
     Raises: StudyError.
     """
-    if not values:
+    if not len(values):
         raise StudyError(f"grid: {key}: must have a value at least, not []")
     kinds = {_kind(value) for value in values}
     if kinds == {int, float}:

@@ -2,17 +2,17 @@
 
 import os
 from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from tempfile import mkdtemp
 
 from laglab.errors import LaglabError, RunError
-from laglab.extras import STUDYING, require
 from laglab.progress import progress_of_study
 from laglab.studies.sweep.cell import Cell
 from laglab.studies.sweep.folder import Folder
 from laglab.studies.sweep.loading import load_study
-from laglab.studies.sweep.plan import MOST_RUNS, check_size, planned
+from laglab.studies.sweep.plan import check_size, planned
 from laglab.studies.sweep.result import StudyResult
 from laglab.studies.sweep.study import Study
 from laglab.studies.sweep.tasks import done, grouped
@@ -23,43 +23,30 @@ AHEAD = 64
 """Tasks that are handed out at once, whether anybody has a hand free or not."""
 
 
-def sweep(
+def swept(
     study: Study | str | Path,
-    executor: Executor | None = None,
-    out: str | Path | None = None,
-    progress: bool = False,
-    *,
-    limit: int = MOST_RUNS,
+    executor: Executor | None,
+    out: str | Path | None,
+    progress: bool,
+    limit: int,
 ) -> StudyResult:
-    """Have a study computed, given itself, by its shipped name or by its file.
-
-    Args:
-        executor: who does the jobs, as those of `concurrent.futures` do; None: processes of our
-            own, one a core, which are gone at the end.
-        out: the folder for the results; what it has of the study already is not computed again.
-            None keeps them in a temporary one, as long as the result is kept.
-        progress: show it on standard error.
-        limit: the most runs that are meant.
-
-    Raises:
-        StudyError, ScenarioError: there is no such study, or it cannot be.
-        PlaceError: the results cannot go there.
-        RunError, ResultsError: something broke on the way; what was done is in `out`.
-        KeyboardInterrupt: Ctrl-C; likewise.
-    """
-    require(STUDYING)
+    """As `sweep` says."""
     chosen = study if isinstance(study, Study) else load_study(str(study))
     check_size(chosen, limit)
     planned(chosen)
-    temporary = TemporaryDirectory(prefix="laglab-") if out is None else None
-    folder = Folder.made(Path(temporary.name if temporary else str(out)), chosen)
+    if out is None:
+        folder = Folder.made(Path(mkdtemp(prefix="laglab-")), chosen)
+        result = StudyResult.passing(chosen, folder, chosen.origin)
+    else:
+        folder = Folder.made(Path(out), chosen)
+        result = StudyResult(chosen, folder, chosen.origin)
     plan = planned(chosen, folder)
     with (
         progress_of_study(chosen.name, plan.runs, plan.seconds, progress) as told,
         own_processes() if executor is None else nullcontext(executor) as workers,
     ):
         compute(chosen, folder, workers, told)
-    return StudyResult(chosen, folder, chosen.origin, temporary)
+    return result
 
 
 def own_processes(workers: int = 0) -> AbstractContextManager[Processes]:
@@ -88,8 +75,11 @@ def compute(
             contents = future.result()
         except LaglabError:
             raise
-        except Exception as error:  # whatever an executor that is not ours may say
-            raise RunError(f"{study.name}: the workers are lost: {error!r}") from error
+        except (Exception, CancelledError) as error:  # whatever an executor may say
+            raise RunError(
+                f"{study.name}: whoever was to do the rest failed or is gone ({error!r}): what is "
+                "done is kept, and the same command goes on from there"
+            ) from error
         for cell, content in zip(task.cells, contents, strict=True):
             folder.keep(cell, content)
             told(len(cell.seeds), seconds(cell))

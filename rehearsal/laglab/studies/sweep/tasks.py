@@ -12,7 +12,7 @@ from laglab.studies.sweep.compute import computed
 from laglab.studies.sweep.ways import seconds
 from laglab.version import code_version
 
-WORTHWHILE = 0.3
+WORTHWHILE = 0.1
 """[s] A task takes so long or longer, where there are cells enough."""
 MOST_CELLS = 100
 

@@ -1,0 +1,122 @@
+"""A study that cannot be: one line, exit 2, before anything runs; 4 for what breaks on the way."""
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from laglab.command import main
+
+from .studying import SHORT, SMALL
+from .test_full_disk import MOUNTED, may_mount
+
+Start = Callable[..., "subprocess.Popen[str]"]
+
+BASE = 'scenario = "lab"\nseeds = 2\n'
+WRONG = {
+    '[grid]\n"link.command_delay" = []': "grid: link.command_delay: must have a value at least",
+    '[grid]\n"link.command_delay" = [1, -2]': "with link.command_delay = -2: link.command_delay: "
+    "must be 0 or more, not -2",
+    '[grid]\n"link.comand_delay" = [1]': "unknown key; did you mean link.command_delay?",
+    "[grid]\nlink.command_delay = 3": "grid: link.command_delay: must be a list of values, not 3",
+    "[grid]\nnoise = [true, 3]": "grid: noise: must have values of one kind",
+    "[grid]\nnoise = [true, true]": "grid: noise: must have each value once",
+    "[grid]\nseed = [1]": "the seeds of a study are said by `seeds`",
+    '[grid]\n"estimator.kind" = ["popf", "nonsense"]': "must be one of raw, ekf",
+    "[grid]\nduration = [inf]": "duration: must be finite here",
+    '[grid]\npace = ["realtime"]': "pace: must be lockstep in a study",
+    '[grid]\n"link.replay" = ["nowhere.csv"]': "nowhere.csv is not a readable link log",
+    "[start]\nradius = 3.0\n[grid]\nstart = [[1.0, 2.0, 0.0]]": "grid: start: [start] gives every",
+    "[start]\nradius = -3.0": "start.radius: must be above 0",
+    "[start]\nradius = 2000.0": "start.radius: must be 1000 or less",
+    "sedes = 3": "sedes: unknown key; known here: scenario, description, seeds, grid, start",
+    "[[": "not a readable TOML file",
+}
+ALONE = {
+    "seeds = 3": "scenario: must be there",
+    'scenario = "nowhere"': "nowhere: no such scenario",
+    "[scenario]\nnonsense = 3": "nonsense: unknown key",
+    'scenario = "lab"\nseeds = 0': "seeds: must be a number of seeds, 1 or more",
+    'scenario = "lab"\nseeds = [1, 1]': "seeds: must have each seed once",
+}
+
+
+def refused(arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["sweep", *arguments])
+    errors = capsys.readouterr().err
+    assert ended.value.code == 2, errors
+    assert said in errors
+    assert len(errors.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "said"), [*((BASE + text, said) for text, said in WRONG.items()), *ALONE.items()]
+)
+def test_what_is_wrong_in_its_file_is_one_line(
+    text: str,
+    said: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("bad.toml").write_text(text)
+    refused(["bad.toml"], said, capsys)
+    assert not Path("studies").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["nonsense"], "nonsense: no such study; shipped: claims"),
+        (["gains", "--set", "law.gama=1"], "unknown key; did you mean law.gamma?"),
+        (
+            ["gains", "--seeds", "10000000"],
+            "3150000000 runs (315 points of the grid, 10000000 seed",
+        ),
+        (["gains", "--limit", "3149"], "say --limit 3150"),
+        (["gains", "--out", "/dev/null"], "--out /dev/null: that is a file"),
+        (["gains", "--out", "/proc/nowhere"], "--out /proc/nowhere: cannot write there"),
+    ],
+)
+def test_what_is_asked_for_in_vain_is_one_line(
+    arguments: list[str],
+    said: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    refused(arguments, said, capsys)
+
+
+def test_without_the_extra_it_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("laglab.extras.find_spec", lambda module: module != "pyarrow" or None)
+    refused(["gains"], "pip install 'laglab[study]' brings it", capsys)
+
+
+def test_a_disk_that_fills_up_is_one_line_and_what_was_written_is_whole(
+    start_program: Start, tmp_path: Path
+) -> None:
+    if not may_mount():
+        pytest.skip("no file system may be mounted here, in a namespace of our own")
+    (tmp_path / "small.toml").write_text(SMALL)
+    (tmp_path / "small").mkdir()
+    sweep = (sys.executable, "-m", "laglab", "sweep", "small.toml", *SHORT, "--out", "small/out")
+    script = MOUNTED.format(size=40) + '; "$@"; code=$?; cp -r small/out kept; exit $code'
+    process = start_program("unshare", "-rm", "sh", "-c", script, "sh", *sweep)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 4, errors
+    assert len(errors.splitlines()) == 1
+    assert errors.startswith("laglab: cannot write small/out/cells/")
+    assert "No space left on device" in errors
+    left = list((tmp_path / "kept" / "cells").iterdir())
+    assert left
+    for path in left:
+        content = path.read_bytes()
+        assert content[:4] == content[-4:] == b"PAR1"

@@ -1,0 +1,213 @@
+"""Studies, computed by processes of our own: interrupted, killed, resumed, changed."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+import laglab as lab
+from laglab.errors import RunError, StudyError
+from laglab.studies.sweep.loading import load_study, shipped_study_names
+from laglab.studies.sweep.plan import planned
+from laglab.studies.workers import Processes
+
+from .studying import (
+    CELLS,
+    SEEDS,
+    SHORT,
+    SMALL,
+    Contents,
+    contents,
+    nothing_again,
+    undisturbed,
+    wait_for_cells,
+)
+
+Laglab = Callable[..., subprocess.CompletedProcess[str]]
+Start = Callable[..., "subprocess.Popen[str]"]
+SWEEP = ("sweep", "small.toml", *SHORT, "--out", "out")
+
+
+@pytest.fixture(scope="module")
+def expected(tmp_path_factory: pytest.TempPathFactory) -> Contents:
+    path = tmp_path_factory.mktemp("expected") / "small.toml"
+    path.write_text(SMALL)
+    return undisturbed(path)
+
+
+@pytest.fixture
+def out(tmp_path: Path) -> Path:
+    (tmp_path / "small.toml").write_text(SMALL)
+    return tmp_path / "out"
+
+
+def workers_of(process: "subprocess.Popen[str]") -> list[int]:
+    """Its children."""
+    listed = Path(f"/proc/{process.pid}/task").glob("*/children")
+    return [int(number) for path in listed for number in path.read_text().split()]
+
+
+def gone(number: int) -> bool:
+    """Whether that process is."""
+    deadline = time.monotonic() + 10
+    while time.monotonic() < deadline:
+        try:
+            if ") Z " in Path(f"/proc/{number}/stat").read_text():
+                return True
+        except OSError:
+            return True
+        time.sleep(0.05)
+    return False
+
+
+def test_a_killed_worker_loses_nothing(start: Start, out: Path, expected: Contents) -> None:
+    sweep = start(*SWEEP, "--workers", "2")
+    rng = random.Random(1)
+    for count in (1, 3):
+        wait_for_cells(out, count)
+        time.sleep(rng.uniform(0.0, 0.1))
+        os.kill(rng.choice(workers_of(sweep)), signal.SIGKILL)
+    output, errors = sweep.communicate(timeout=50)
+    assert sweep.returncode == 0, errors
+    assert not errors
+    assert f"{CELLS * SEEDS} runs" in output
+    assert contents(out) == expected
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGKILL, -9)])
+def test_what_was_done_is_kept_and_the_rest_is_done_later(
+    start: Start, laglab: Laglab, out: Path, expected: Contents, number: int, code: int
+) -> None:
+    sweep = start(*SWEEP, "--workers", "2")
+    wait_for_cells(out, 2)
+    time.sleep(random.Random(number).uniform(0.0, 0.2))
+    workers = workers_of(sweep)
+    sweep.send_signal(number)
+    _, errors = sweep.communicate(timeout=20)
+    assert sweep.returncode == code
+    assert errors == ("laglab: interrupted\n" if code == 130 else "")
+    assert len(workers) == 2
+    assert all(map(gone, workers))
+    for half in (out / "cells").glob(".*.new"):  # killed while it was being written
+        assert number == signal.SIGKILL
+        half.unlink()
+    before = contents(out)
+    assert 2 <= len(before) < CELLS
+    with nothing_again(out):
+        again = laglab(*SWEEP)
+    assert again.returncode == 0, again.stderr
+    assert f"{SEEDS * len(before)} of them had been made before" in again.stdout
+    assert contents(out) == expected
+
+
+def test_two_at_once_do_no_harm(start: Start, out: Path, expected: Contents) -> None:
+    both = [start(*SWEEP, "--workers", "1") for _ in range(2)]
+    for sweep in both:
+        _, errors = sweep.communicate(timeout=50)
+        assert sweep.returncode == 0, errors
+        assert not errors
+    assert contents(out) == expected
+
+
+def test_a_study_that_was_changed_says_what_is_no_longer_part_of_it(
+    laglab: Laglab, out: Path, expected: Contents
+) -> None:
+    (out / "cells").mkdir(parents=True)
+    for name, content in expected.items():
+        (out / "cells" / name).write_bytes(content)
+    (out.parent / "small.toml").write_text(SMALL.replace(", 14]", "]"))
+    with nothing_again(out):
+        changed = laglab(*SWEEP)
+    assert changed.returncode == 0
+    assert f"{14 * SEEDS} of them had been made before" in changed.stdout
+    assert "2 cells are no longer part of the study" in changed.stderr
+    assert "link.command_delay = 14, estimator.kind = popf" in changed.stderr
+    assert len(contents(out)) == CELLS
+    assert lab.open_study(out).table.num_rows == 14 * SEEDS
+
+
+def test_other_code_computes_anew(out: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    study = load_study(str(out.parent / "small.toml"))
+    keys = {cell.key for cell in study.cells()}
+    monkeypatch.setattr("laglab.studies.sweep.study.code_version", lambda: "another")
+    other = load_study(str(out.parent / "small.toml"))
+    assert not keys & {cell.key for cell in other.cells()}
+
+
+def test_from_python_with_any_executor(tmp_path: Path) -> None:
+    path = tmp_path / "small.toml"
+    path.write_text(SMALL.replace("0, 2, 4, 6, 8, 10, 12, 14", "0, 10"))
+    study = load_study(str(path), {"duration": 1.0})
+    with ThreadPoolExecutor(1) as threads:
+        result = lab.sweep(study, executor=threads)
+    frame = result.to_pandas()
+    assert len(frame) == study.runs == 12
+    assert list(frame["seed"][:4]) == [1, 2, 3, 1]
+    assert list(frame["estimator.kind"][2:4]) == ["popf", "delayed-ekf"]
+    there = result.map("link.command_delay", "estimator.kind", "rms_x")
+    assert there.shape == (2, 2)
+    some = frame[(frame["link.command_delay"] == 10) & (frame["estimator.kind"] == "popf")]
+    assert there.loc["popf", 10] == pytest.approx(some["rms_x"].mean())
+    assert result.map("estimator.kind", "seed", "converged").to_numpy().max() == 0.0
+    with pytest.raises(StudyError, match="no column 'nonsense'"):
+        result.map("nonsense", "seed", "rms_x")
+
+
+def test_from_a_plain_script_processes_of_our_own(tmp_path: Path) -> None:
+    """Which has no guard for what happens when it is imported."""
+    (tmp_path / "small.toml").write_text(SMALL.replace("0, 2, 4, 6, 8, 10, 12, 14", "0, 10"))
+    script = (
+        "import laglab",
+        "print('once')",
+        "study = laglab.load_study('small.toml', {'duration': 0.5})",
+        "print(laglab.sweep(study).table.num_rows)",
+    )
+    (tmp_path / "script.py").write_text("\n".join(script))
+    ran = subprocess.run(
+        [sys.executable, "script.py"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert ran.stdout == "once\n12\n", ran.stderr
+
+
+def test_a_folder_is_read_whatever_the_code_is_by_now(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "tiny.toml"
+    path.write_text('scenario = "fig6"\n[grid]\nnoise = [false, true]\n')
+    study = load_study(str(path), {"duration": 0.5})
+    with ThreadPoolExecutor(1) as threads:
+        lab.sweep(study, executor=threads, out=tmp_path / "out")
+    monkeypatch.setattr("laglab.studies.sweep.study.code_version", lambda: "another")
+    again = lab.open_study(tmp_path / "out")
+    assert again.table.num_rows == 2
+    assert again.missing == 0
+    assert dict(again.study.grid) == {"noise": (False, True)}
+
+
+def test_a_job_that_kills_whoever_does_it_is_given_up() -> None:
+    with Processes(1) as processes:
+        deadly = processes.submit(os._exit, 7)
+        harmless = processes.submit(abs, -3)
+        with pytest.raises(RunError, match="exit code 7 and no word, three times at the same job"):
+            deadly.result(40)
+        assert harmless.result(20) == 3
+
+
+@pytest.mark.parametrize("name", shipped_study_names())
+def test_every_shipped_study_can_be_run(name: str) -> None:
+    study = load_study(name)
+    assert study.description
+    assert planned(study).runs == study.runs < 20_000
+
+
+def test_without_a_study_they_are_listed(laglab: Laglab) -> None:
+    listed = laglab("sweep")
+    assert listed.returncode == 0
+    assert all(name in listed.stdout for name in shipped_study_names())
