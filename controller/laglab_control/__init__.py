@@ -38,7 +38,7 @@ from laglab_control.estimators import (
 from laglab_control.estimators.kalman import normalised_squared
 from laglab_control.flight import Echo
 from laglab_control.guard import Alarm, Guard
-from laglab_control.laws import Demand, Law
+from laglab_control.laws import DelayMargin, Demand, Law, delay_margin
 from laglab_control.model import Model, NonlinearModel
 from laglab_control.replay import Replay, constant_delay, replay
 from laglab_control.robot import RobotModel
@@ -55,6 +55,7 @@ __all__ = [
     "Control",
     "ControlError",
     "Controller",
+    "DelayMargin",
     "DelayedEkf",
     "Demand",
     "Echo",
@@ -83,6 +84,7 @@ __all__ = [
     "WheelScales",
     "chi_square_bound",
     "constant_delay",
+    "delay_margin",
     "is_far",
     "normalised_squared",
     "replay",

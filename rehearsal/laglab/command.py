@@ -14,8 +14,10 @@ from laglab.commands import (
     errata,
     estimators,
     fmu,
+    maps,
     protocol,
     replay,
+    reproduce,
     run,
     scenario,
     scenarios,
@@ -64,6 +66,8 @@ app.command("compare")(compare.compare)
 app.command("consistency")(consistency.consistency)
 app.command("trust")(trust.trust)
 app.command("soak")(soak.soak)
+app.command("map")(maps.map_study)
+app.command("reproduce")(reproduce.reproduce)
 app.command("errata")(errata.errata)
 app.command("sweep")(sweep.sweep)
 app.command("gateway")(sides.gateway)

@@ -12,6 +12,7 @@ class Need(Enum):
     STEPPING = "gateway", ("fmpy",)
     DRAWING = "run", ("matplotlib",)
     REHEARSING = "run", ("fmpy", "matplotlib")
+    MAPPING = "study", ("matplotlib", "pyarrow")
     STUDYING = "study", ("fmpy", "pyarrow", "pandas")
     SPREADING = "study", ("distributed",)
 
@@ -20,7 +21,7 @@ class Need(Enum):
         self.modules = modules
 
 
-STEPPING, DRAWING, REHEARSING, STUDYING, SPREADING = Need
+STEPPING, DRAWING, REHEARSING, MAPPING, STUDYING, SPREADING = Need
 
 
 def require(need: Need) -> None:

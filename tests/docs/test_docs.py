@@ -12,7 +12,7 @@ import pytest
 import typer
 
 from laglab.command import app
-from laglab_control import Erratum
+from laglab_control import Erratum, Law, delay_margin
 from laglab_control.estimators.popf import delay_limit
 
 ROOT = Path(__file__).parents[2]
@@ -114,6 +114,13 @@ def test_every_switch_of_the_errata_is_in_their_table() -> None:
 def test_the_delay_limits_are_those_of_the_code() -> None:
     for m, largest in table(THEORY, "The delay limit of the gain"):
         assert f"{delay_limit(int(m)):.3f}" == largest
+
+
+def test_the_delay_margins_are_those_of_the_code() -> None:
+    for gains, *margins in table(THEORY, "The loop's delay margin"):
+        lambda_, h, gamma = (float(gain) for gain in gains.split(","))
+        law = Law(lambda_=lambda_, h=h, gamma=gamma, goal_tolerance=0.03)
+        assert [int(margin) for margin in margins] == list(delay_margin(law, 0.01))
 
 
 def test_each_word_has_one_meaning() -> None:

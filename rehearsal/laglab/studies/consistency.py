@@ -144,7 +144,7 @@ def samples(
     """
     jobs = [Job(nth(scenario, number).to_toml(), tuple(estimators)) for number in range(seeds)]
     for answer in shared_out(judge, jobs, workers):
-        yield {name: _unpacked(table) for name, table in answer.samples.items()}
+        yield {name: unpacked(table) for name, table in answer.samples.items()}
 
 
 def judge(job: Job) -> Judged:
@@ -169,7 +169,8 @@ def judged(said: Sequence[Known], trace: Trace) -> Sample:
     return Sample(error, variances, nees(error, P), nis, nees(ahead_error, P_ahead))
 
 
-def _unpacked(table: bytes) -> Sample:
+def unpacked(table: bytes) -> Sample:
+    """What `judge` packed."""
     columns = np.frombuffer(table).reshape(-1, 9)
     return Sample(columns[:, :3], columns[:, 3:6], *columns[:, 6:].T)
 

@@ -49,10 +49,11 @@ class Cost(NamedTuple):
 def costs(scenario: Scenario, seeds: int) -> Iterator[Cost]:
     """Every variant in the loop of the scenario, one after the other."""
     for variant in VARIANTS:
-        yield _cost(scenario, variant, seeds)
+        yield cost(scenario, variant, seeds)
 
 
-def _cost(scenario: Scenario, variant: Variant, seeds: int) -> Cost:
+def cost(scenario: Scenario, variant: Variant, seeds: int) -> Cost:
+    """Of one variant: without noise, and with it over the seeds."""
     errors, converged, _ = _trial(changed(scenario, {"noise": False}), variant)
     noisy = [
         _trial(changed(scenario, {"noise": True, "seed": scenario.seed + i}), variant)

@@ -1,0 +1,35 @@
+"""``laglab map``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from laglab.extras import MAPPING, require
+from laglab.results.figure import picture_place, save
+from laglab.studies.maps import draw_study, read_runs
+
+
+def map_study(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="What a study left.")],
+    x: Annotated[str | None, typer.Option(metavar="KEY", help="Of the grid, to the right.")] = None,
+    y: Annotated[str | None, typer.Option(metavar="KEY", help="Of the grid, upwards.")] = None,
+    value: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="COLUMN",
+            help="What is drawn; may be repeated. converged, rms_x and others by default.",
+        ),
+    ] = None,
+    out: Annotated[
+        Path, typer.Option("--out", metavar="FILE", help="The picture: PNG, PDF, SVG and others.")
+    ] = Path("map.png"),
+) -> None:
+    """Draw a study's results again, without running it.
+
+    The two keys with the most values span the map, the next one makes panels side by side.
+    """
+    require(MAPPING)
+    picture_place(out)
+    save(draw_study(read_runs(folder), value or (), x, y), out)
+    print(out)

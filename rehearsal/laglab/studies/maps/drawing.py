@@ -1,0 +1,73 @@
+"""The picture of a study: heat maps over two keys, or lines over one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from laglab.scenario import Scenario, changed
+from laglab.studies.maps.grid import Sorted, fields, sorted_into
+from laglab.studies.maps.heat import Map, draw_maps
+from laglab.studies.maps.lines import draw_lines
+from laglab.studies.maps.margin import Plane, moves_it, plane
+from laglab.studies.maps.measures import Told
+from laglab.studies.maps.runs import Layout, StudyRuns, layout
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+ALWAYS = "converged"
+MEASURES = (ALWAYS, "diverged", "rms_x", "settled_s")
+"""Drawn when nothing else is asked for, as far as they say something."""
+
+
+def draw_study(
+    runs: StudyRuns,
+    values: Sequence[str] = (),
+    x: str | None = None,
+    y: str | None = None,
+) -> Figure:
+    """A row of panels for each of the columns `values`, on one scale; a panel for each value of a
+    third key. Other keys are taken together, as the title says.
+
+    Raises: StudyError, when there is no such key or column, or nothing to draw along.
+    """
+    chosen = layout(runs, x, y)
+    told = [Told.by(runs, column) for column in values or MEASURES]
+    if not values:
+        told = [each for each in told if each.of.column == ALWAYS or each.says_something]
+    into = sorted_into(runs, chosen)
+    maps = [Map(each.of, fields(each, into)) for each in told]
+    if chosen.y is None:
+        figure = draw_lines(chosen, into, maps, _line_margin(runs, chosen))
+    else:
+        figure = draw_maps(chosen, into, maps, margins(runs, chosen, into))
+    figure.suptitle(_title(runs, chosen))
+    return figure
+
+
+def margins(runs: StudyRuns, chosen: Layout, into: Sorted) -> list[Plane]:
+    """A panel each; none where it is not on the map, or not one for all runs of a cell."""
+    x, y, key = chosen.x, chosen.y or "", chosen.panels
+    if runs.base is None or not (moves_it(x) or moves_it(y)) or any(map(moves_it, chosen.averaged)):
+        return []
+    bases = [
+        changed(runs.base, {key: value}) if key and moves_it(key) else runs.base
+        for value in into.panels
+    ]
+    return [plane(base, x, into.x, y, into.y) for base in bases]
+
+
+def _line_margin(runs: StudyRuns, chosen: Layout) -> Scenario | None:
+    """What it is drawn for, where one line is that of all."""
+    others = (chosen.panels, *chosen.averaged)
+    return None if any(key and moves_it(key) for key in others) else runs.base
+
+
+def _title(runs: StudyRuns, chosen: Layout) -> str:
+    seeds = len(set(runs.columns["seed"].tolist())) if "seed" in runs.columns else 0
+    total = len(runs.columns[chosen.x])
+    told = f"{runs.name}: {total} runs" + (f", {seeds} seeds" if seeds > 1 else "")
+    if chosen.averaged:
+        told += f"; all of {', '.join(chosen.averaged)} together"
+    return told
