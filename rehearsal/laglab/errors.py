@@ -13,6 +13,12 @@ class ScenarioError(LaglabError):
     exit_code = 2
 
 
+class StudyError(LaglabError):
+    """A study cannot be found, read or run as it is; the text names the key."""
+
+    exit_code = 2
+
+
 class MissingExtraError(LaglabError):
     """Something is not installed here; the text names the extra that brings it."""
 

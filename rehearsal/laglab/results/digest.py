@@ -5,7 +5,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from laglab.results.numbers import LAST_SECOND, RmsError, deviation, is_measured, loop_estimates
+from laglab.results.numbers import (
+    LAST_SECOND,
+    RmsError,
+    deviation,
+    is_measured,
+    last_second,
+    loop_estimates,
+)
 from laglab.results.summary import Errors, Seen
 from laglab_gateway import Trace
 
@@ -37,5 +44,5 @@ def digest(pieces: Iterable[Trace], measurement_delay: int) -> Digest:
 
 def _last_second(pieces: list[Trace]) -> Trace:
     whole = {name: np.concatenate([each[name] for each in pieces]) for name in pieces[0]}
-    last = whole["time"] >= whole["time"][-1] - LAST_SECOND
+    last = last_second(whole["time"])
     return {name: column[last] for name, column in whole.items()}

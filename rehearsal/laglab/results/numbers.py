@@ -1,10 +1,11 @@
 """Numbers from traces: where the robot was, how far the estimate was off, whether it got there."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
 from laglab.results.summary import Errors
-from laglab_control import wrap
 from laglab_gateway import Trace
 
 AXES = ("x", "y", "theta")
@@ -12,8 +13,18 @@ DISTANCE_BOUND = 0.06
 HEADING_BOUND = 0.05
 LAST_SECOND = 1.0
 Array = NDArray[np.float64]
+Goal = tuple[float, float, float]
+"""x [m], y [m], theta [rad]."""
 
-_wrapped = np.vectorize(wrap, otypes=[np.float64])
+
+def wrapped(angles: Array) -> Array:
+    """The same angles within half a turn of 0 [rad], of any shape; NaN where they are not finite.
+
+    So small ones stay what they are, to the bit.
+    """
+    with np.errstate(invalid="ignore"):
+        turned: Array = angles - math.tau * np.rint(angles / math.tau)
+    return turned
 
 
 def is_measured(trace: Trace) -> bool:
@@ -39,52 +50,77 @@ def shadow_estimates(trace: Trace, name: str) -> Array:
 
 def deviation(trace: Trace, estimates: Array) -> Array:
     """Estimate less pose, shape (ticks + 1, 3), heading wrapped."""
-    difference = estimates - robot_pose(trace)
-    difference[:, 2] = _wrapped(difference[:, 2])
+    return pose_difference(estimates, robot_pose(trace))
+
+
+def pose_difference(poses: Array, others: Array) -> Array:
+    """The one less the other, shape (..., 3), heading wrapped."""
+    with np.errstate(invalid="ignore"):
+        difference = poses - others
+    difference[..., 2] = wrapped(difference[..., 2])
     return difference
 
 
-def goal_errors(pose: Array, goal: tuple[float, float, float]) -> tuple[Array, Array]:
-    """Distance to the goal ρ [m] and heading error [rad] of poses, shape (n, 3)."""
+def goal_errors(pose: Array, goal: Goal) -> tuple[Array, Array]:
+    """Distance to the goal ρ [m] and heading error [rad] of poses, shape (..., 3)."""
     x, y, theta = goal
-    rho = np.hypot(pose[:, 0] - x, pose[:, 1] - y)
-    return rho, _wrapped(pose[:, 2] - theta)
+    rho = np.hypot(pose[..., 0] - x, pose[..., 1] - y)
+    return rho, wrapped(pose[..., 2] - theta)
 
 
-def has_converged(trace: Trace, goal: tuple[float, float, float]) -> bool:
-    """ρ < 0.06 m and |θ error| < 0.05 rad at every tick of the last second.
+def at_goal(pose: Array, goal: Goal) -> NDArray[np.bool_]:
+    """ρ < 0.06 m and |θ error| < 0.05 rad, of poses (..., 3)."""
+    rho, theta_error = goal_errors(pose, goal)
+    within: NDArray[np.bool_] = (rho < DISTANCE_BOUND) & (np.abs(theta_error) < HEADING_BOUND)
+    return within
+
+
+def last_second(time: Array) -> NDArray[np.bool_]:
+    """Which of the times [s] lie in the last one."""
+    there: NDArray[np.bool_] = time >= time[-1] - LAST_SECOND
+    return there
+
+
+def has_converged(trace: Trace, goal: Goal) -> bool:
+    """At the goal at every tick of the last second.
 
     Where the pose is measured, in the second's mean: the sensor's noise does not move the robot.
     """
-    last_second = robot_pose(trace)[trace["time"] >= trace["time"][-1] - LAST_SECOND]
+    pose = robot_pose(trace)[last_second(trace["time"])]
     if is_measured(trace):
-        last_second = last_second[~np.isnan(last_second).any(axis=1)]
-        last_second = last_second.mean(axis=0, keepdims=True) if len(last_second) else last_second
-    rho, theta_error = goal_errors(last_second, goal)
-    within = (rho < DISTANCE_BOUND) & (np.abs(theta_error) < HEADING_BOUND)
-    return bool(len(within) and within.all())
+        pose = pose[~np.isnan(pose).any(axis=1)]
+        pose = pose.mean(axis=0, keepdims=True) if len(pose) else pose
+    return len(pose) > 0 and bool(at_goal(pose, goal).all())
 
 
 class RmsError:
-    """Root mean square over any number of deviations (n, 3), piece by piece; NaN: none there."""
+    """Root mean square over any number of deviations (..., n, 3), piece by piece, of as many
+    robots at once as there are in the axes before; NaN: none there."""
 
     def __init__(self) -> None:
-        self._squares = np.zeros(3)
-        self._count = 0
+        self._squares: Array = np.zeros(3)
+        self._count: NDArray[np.intp] | int = 0
 
     def add(self, deviations: Array) -> None:
         """Some more."""
-        there = deviations[~np.isnan(deviations).any(axis=1)]
+        x, y, theta = np.moveaxis(np.isnan(deviations), -1, 0)
+        there = ~(x | y | theta)
+        known = np.where(there[..., np.newaxis], deviations, 0.0)
         with np.errstate(over="ignore"):
-            self._squares = self._squares + (there**2).sum(axis=0)
-        self._count += len(there)
+            self._squares = self._squares + np.einsum("...kj,...kj->...j", known, known)
+        self._count = self._count + np.count_nonzero(there, axis=-1)
+
+    def values(self) -> Array:
+        """Shape (..., 3); NaN without any; the largest number there is where it is infinite."""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            mean = self._squares / np.asarray(self._count)[..., np.newaxis]
+        rms: Array = np.nan_to_num(np.sqrt(mean), nan=np.nan)  # JSON has no infinity
+        return rms
 
     def errors(self) -> Errors | None:
-        """None without any, or when they are not finite."""
-        if not self._count:
-            return None
-        rms = np.nan_to_num(np.sqrt(self._squares / self._count))  # JSON has no infinity
-        return Errors(*rms.tolist())
+        """Of one robot; None without any."""
+        rms = self.values()
+        return None if np.isnan(rms).any() else Errors(*rms.tolist())
 
 
 def rms_error(deviations: Array) -> Errors | None:

@@ -38,6 +38,11 @@ def changed(scenario: Scenario, overrides: Overrides) -> Scenario:
     return _made(scenario.fields(), overrides, scenario.name)
 
 
+def made_of(fields: dict[str, Any], folder: Path) -> Scenario:
+    """From a table in somebody else's file, in `folder`. Raises: ScenarioError."""
+    return _made(_anchored(fields, folder), {}, str(fields.get("name", "")))
+
+
 def _made(fields: dict[str, Any], overrides: Overrides, called: str) -> Scenario:
     try:
         for key, value in overrides.items():

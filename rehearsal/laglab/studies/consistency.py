@@ -19,7 +19,8 @@ from msgspec import Struct
 from numpy.typing import NDArray
 
 from laglab.interface import run
-from laglab.results.numbers import robot_pose
+from laglab.results.nees import nees
+from laglab.results.numbers import pose_difference, robot_pose
 from laglab.scenario import Scenario, changed
 from laglab.studies.overhearing import Known, Overhearing
 from laglab.studies.workers import shared_out
@@ -160,31 +161,17 @@ def judged(said: Sequence[Known], trace: Trace) -> Sample:
     """What a filter said at the ticks of a run, beside where the robot was."""
     pose = robot_pose(trace)
     x, P, nis, ahead, P_ahead, n = (np.array(column) for column in zip(*said, strict=True))
-    error = _wrapped(x - pose[: len(x)])
+    error = pose_difference(x, pose[: len(x)])
     arrival = np.arange(len(x)) + n
     there = np.where((arrival < len(pose))[:, np.newaxis], pose[arrival % len(pose)], np.nan)
     variances = np.diagonal(P, axis1=1, axis2=2)
-    return Sample(error, variances, _nees(error, P), nis, _nees(_wrapped(ahead - there), P_ahead))
+    ahead_error = pose_difference(ahead, there)
+    return Sample(error, variances, nees(error, P), nis, nees(ahead_error, P_ahead))
 
 
 def _unpacked(table: bytes) -> Sample:
     columns = np.frombuffer(table).reshape(-1, 9)
     return Sample(columns[:, :3], columns[:, 3:6], *columns[:, 6:].T)
-
-
-def _wrapped(error: Array) -> Array:
-    error[:, 2] = np.remainder(error[:, 2] + np.pi, 2 * np.pi) - np.pi
-    return error
-
-
-def _nees(error: Array, P: Array) -> Array:
-    nees = np.full(len(error), np.nan)
-    for k, (e, covariance) in enumerate(zip(error, P, strict=True)):
-        if not (np.isfinite(e).all() and np.isfinite(covariance).all()):
-            continue
-        if np.linalg.eigvalsh(covariance)[0] > 0:
-            nees[k] = e @ np.linalg.solve(covariance, e)
-    return nees
 
 
 def verdict(name: str, of_seeds: Sequence[Sample], measurement_delay: int) -> Verdict:

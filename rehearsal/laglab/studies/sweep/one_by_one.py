@@ -1,0 +1,71 @@
+"""A cell's runs, one after the other, each as `laglab run --transport inline` makes it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+
+from laglab.errors import RunError
+from laglab.interface import run
+from laglab.results.numbers import loop_estimates, robot_pose
+from laglab.results.run import Run
+from laglab.scenario import Scenario
+from laglab.studies.sweep.cell import Cell
+from laglab.studies.sweep.judged import Array, Judgements, Record, joined, judgements
+from laglab_control import Applied, Control, Controller, Echo, Measured
+
+ENDINGS = ("completed", "diverged")
+
+
+@dataclass(frozen=True, eq=False)
+class Claiming(Controller):
+    """The station's controller; what covariance it claims is kept, tick by tick."""
+
+    claims: list[Array] = field(default_factory=list)
+    """(3, 3) each; NaN where nothing is claimed."""
+
+    def start(self) -> Control:
+        """At tick 0."""
+        self.claims.clear()
+        return super().start()
+
+    def answer(
+        self,
+        control: Control,
+        measurements: Sequence[Measured],
+        echoes: Sequence[Echo] = (),
+        recalled: Sequence[Applied] = (),
+    ) -> Control:
+        """The same."""
+        control = super().answer(control, measurements, echoes, recalled)
+        self.claims.append(np.full((3, 3), np.nan) if control.P is None else control.P)
+        return control
+
+
+def one_by_one(cell: Cell) -> Judgements:
+    """What became of every seed. Raises RunError."""
+    return joined([_judged(scenario) for scenario in cell.runs()])
+
+
+def _judged(scenario: Scenario) -> Judgements:
+    claims: list[Array] = []
+    record = _record(run(scenario, controller=partial(Claiming, claims=claims)), claims)
+    m = scenario.link.measurement_delay
+    return judgements(record, scenario.goal, scenario.sample_time, m)
+
+
+def _record(done: Run, claims: Sequence[Array]) -> Record:
+    """Of one robot."""
+    trace, outcome = done.trace, done.summary.outcome
+    if outcome not in ENDINGS:
+        raise RunError(f"{done.scenario.name}, seed {done.scenario.seed}: {done.summary.verdict}")
+    claimed = np.full((len(trace["tick"]), 3, 3), np.nan)
+    claimed[: len(claims)] = claims[: len(claimed)]
+    return Record(
+        robot_pose(trace)[np.newaxis],
+        loop_estimates(trace)[np.newaxis],
+        claimed[np.newaxis],
+        np.stack([trace["v"], trace["omega"]], axis=1)[np.newaxis],
+        np.array([trace["tick"][-1] if outcome == "diverged" else np.nan]),
+    )

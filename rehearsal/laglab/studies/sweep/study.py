@@ -1,0 +1,143 @@
+"""A study's description: which scenario, over which values, with which seeds."""
+
+import hashlib
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import islice, product
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from laglab.errors import ScenarioError, StudyError
+from laglab.scenario import Scenario, changed
+from laglab.scenario.explain import spelled
+from laglab.scenario.problems import first_problem
+from laglab.studies.sweep.cell import Cell
+from laglab.version import code_version
+
+MOST_SEEDS = 250
+"""Of one cell: as many runs as are one task, with or without a batch."""
+
+
+@dataclass(frozen=True)
+class Study:
+    """A scenario, over the product of the grid's values and over seeds.
+
+    Raises StudyError, when something in it cannot be; of the cells' scenarios `check` says that.
+    """
+
+    scenario: Scenario
+    seeds: Sequence[int]
+    grid: Mapping[str, tuple[object, ...]]
+    """Dotted scenario key → its values."""
+    radius: float | None = None
+    """[m] Every seed starts within it, about the goal; None: where the scenario says."""
+    name: str = "study"
+    description: str = ""
+
+    @property
+    def points(self) -> int:
+        """Of the grid."""
+        return math.prod(len(values) for values in self.grid.values())
+
+    @property
+    def runs(self) -> int:
+        """All of them."""
+        return self.points * len(self.seeds)
+
+    @property
+    def cell_count(self) -> int:
+        """How many cells there are."""
+        return self.points * -(-len(self.seeds) // MOST_SEEDS)
+
+    def cells(self, origin: str | None = None) -> Iterator[Cell]:
+        """One after the other; `origin`, where it is not of here and now, as a folder has it."""
+        origin, base = origin or self.origin, self._base
+        for values in product(*self.grid.values()):
+            grid = dict(zip(self.grid, values, strict=True))
+            seeds = iter(self.seeds)
+            while some := tuple(islice(seeds, MOST_SEEDS)):
+                yield Cell(base, grid, some, self.radius, origin)
+
+    @cached_property
+    def origin(self) -> str:
+        """What the cells depend on besides their place in the grid: base, files and code."""
+        told = [code_version(), self._base, sorted(self._files())]
+        return hashlib.sha256(json.dumps(told).encode()).hexdigest()[:32]
+
+    def check(self) -> None:
+        """Every cell's scenario. Raises StudyError: one cannot be, or cannot be run again alike."""
+        first = len(self.seeds) and self.seeds[0]
+        for cell in self.cells():
+            if cell.seeds[0] == first:
+                self._check(cell)
+
+    def _check(self, cell: Cell) -> None:
+        try:
+            scenario = cell.scenario
+            scenario.must_end()
+        except ValidationError as error:
+            raise StudyError(f"{self.name}: with {cell.place}: {first_problem(error)}") from None
+        except ScenarioError as error:
+            raise StudyError(f"{self.name}: with {cell.place}: {error}") from None
+        if scenario.pace != "lockstep":
+            raise StudyError(
+                f"{self.name}: pace: must be lockstep in a study, whose runs are to come out the "
+                "same whenever they are made"
+            )
+
+    @cached_property
+    def _base(self) -> str:
+        """Without what makes no difference to a run's row."""
+        silent = {"description": "", "estimator.compare": [], "seed": 0}
+        return changed(self.scenario, silent).to_toml()
+
+    def _files(self) -> Iterator[tuple[str, str]]:
+        """That the scenarios name, and a hash of each."""
+        replay = self.scenario.link.replay
+        named = [*([str(replay)] if replay else []), *map(str, self.grid.get("link.replay", ()))]
+        for name in named:
+            path = Path(name)
+            if path.is_file():
+                yield name, hashlib.sha256(path.read_bytes()).hexdigest()
+
+    def as_table(self) -> dict[str, object]:
+        """As in a file, the scenario whole."""
+        start = {} if self.radius is None else {"start": {"radius": self.radius}}
+        return {
+            "description": self.description,
+            "seeds": self._told_seeds,
+            **start,
+            "grid": {key: list(values) for key, values in self.grid.items()},
+            "scenario": self.scenario.fields(),
+        }
+
+    @property
+    def _told_seeds(self) -> int | list[int]:
+        counted = isinstance(self.seeds, range)
+        return len(self.seeds) if counted else list(self.seeds)
+
+
+def axis(key: str, values: Sequence[object]) -> tuple[object, ...]:
+    """The values of one key; numbers all of one kind, so that they make a column.
+
+    Raises: StudyError.
+    """
+    if not values:
+        raise StudyError(f"grid: {key}: must have a value at least, not []")
+    kinds = {_kind(value) for value in values}
+    if kinds == {int, float}:
+        values, kinds = [float(value) for value in values], {float}  # type: ignore[arg-type]
+    if len(kinds) > 1:
+        raise StudyError(f"grid: {key}: must have values of one kind, not {list(values)}")
+    told = [spelled(value) for value in values]
+    if twice := next((text for text in told if told.count(text) > 1), None):
+        raise StudyError(f"grid: {key}: must have each value once, not {twice} again")
+    return tuple(values)
+
+
+def _kind(value: object) -> type:
+    return type(value) if isinstance(value, bool | int | float) else str

@@ -1,0 +1,133 @@
+"""A study's cells, and what is judged of their runs."""
+
+import math
+
+import msgspec
+import numpy as np
+import pytest
+
+import laglab
+from laglab.results.nees import nees
+from laglab.studies.sweep.cell import Cell
+from laglab.studies.sweep.compute import computed
+from laglab.studies.sweep.judged import Record, judgements
+from laglab.studies.sweep.loading import load_study
+
+HERE = (0.0, 0.0, 0.0)
+SHORT = """
+scenario = "lab"
+seeds = [3, 5]
+grid = { "estimator.kind" = ["delayed-ekf", "raw"], "estimator.initial_covariance" = [0.3] }
+[start]
+radius = 5.0
+"""
+
+
+@pytest.fixture(scope="module")
+def cells(tmp_path_factory: pytest.TempPathFactory) -> list[Cell]:
+    path = tmp_path_factory.mktemp("study") / "short.toml"
+    path.write_text(SHORT)
+    overrides = {"duration": 8.0, "estimator.guard": False}
+    return list(load_study(str(path), overrides).cells())
+
+
+def test_a_row_is_what_the_run_says_of_itself(cells: list[Cell]) -> None:
+    for cell in cells:
+        for row, seed in zip(computed(cell).to_pylist(), (3, 5), strict=True):
+            start = [row[f"start_{axis}"] for axis in ("x", "y", "theta")]
+            told = {"duration": 8.0, "estimator.guard": False, "seed": seed, "start": start}
+            run = laglab.run("lab", {**told, **cell.grid})
+            summary = run.summary
+            assert row["seed"] == seed
+            assert row["converged"] == summary.converged
+            assert (row["settled_s"] is not None) >= summary.converged
+            assert row["final_rho"] == summary.final.rho
+            assert row["final_theta_error"] == summary.final.theta_error
+            assert row["max_v"] == np.abs(run.trace["v"]).max()
+            assert (row["diverged_tick"] is not None) == (summary.outcome == "diverged")
+            if summary.rms_error is None:
+                assert row["rms_x"] is row["nees"] is None
+            else:
+                assert row["rms_x"] == pytest.approx(summary.rms_error.x, rel=1e-12)
+                assert row["rms_theta"] == pytest.approx(summary.rms_error.theta, rel=1e-12)
+                assert row["nees"] > 0
+
+
+def test_every_seed_starts_somewhere_of_its_own_within_the_radius(cells: list[Cell]) -> None:
+    u = np.random.default_rng((5, 3)).random(3)
+    x, y, theta = cells[0].starts()[1]
+    assert math.hypot(x, y) == pytest.approx(5.0 * math.sqrt(u[0]))
+    assert math.atan2(y, x) == pytest.approx(2 * math.pi * u[1] - math.pi)
+    assert theta == pytest.approx(2 * math.pi * u[2] - math.pi)
+    assert [run.start for run in cells[0].runs()] == [tuple(start) for start in cells[1].starts()]
+
+
+def test_a_cell_travels_and_keeps_its_key(cells: list[Cell]) -> None:
+    away = msgspec.msgpack.decode(msgspec.msgpack.encode(cells[0]), type=Cell)
+    assert away == cells[0]
+    assert away.key == cells[0].key
+    assert away.scenario == cells[0].scenario
+
+
+def test_another_description_or_other_code_is_another_key(cells: list[Cell]) -> None:
+    changes = {"seeds": (3,), "radius": 4.0, "origin": "other", "grid": {"noise": True}}
+    keys = {cells[0].key, cells[1].key}
+    keys |= {msgspec.structs.replace(cells[0], **{k: v}).key for k, v in changes.items()}
+    assert len(keys) == 6
+
+
+def test_nees_is_that_of_the_textbook() -> None:
+    rng = np.random.default_rng(1)
+    root = rng.normal(size=(5, 7, 3, 3))
+    P, e = root @ root.swapaxes(-1, -2), rng.normal(size=(5, 7, 3))
+    P[2, 3] -= 2 * np.eye(3) * np.linalg.eigvalsh(P[2, 3])[0]
+    e[1, 1, 2] = np.inf
+    expected = np.einsum("...i,...ij,...j", e, np.linalg.inv(P), e)
+    expected[2, 3] = expected[1, 1] = np.nan
+    assert nees(e, P) == pytest.approx(expected, rel=1e-8, nan_ok=True)
+
+
+def at(*distances: float) -> Record:
+    """A robot on the x axis, at one tick after the other."""
+    truth = np.zeros((1, len(distances), 3))
+    truth[0, :, 0] = distances
+    applied = np.zeros((1, len(distances), 2))
+    return Record(truth, None, None, applied, np.array([np.nan]))
+
+
+@pytest.mark.parametrize(
+    ("distances", "settled", "converged"),
+    [
+        ((0.0, 0.0, 0.0, 0.0), 0.0, True),
+        ((1.0, 0.0, 0.1, 0.05), 1.5, False),
+        ((1.0, 0.05, 0.05, 0.05), 0.5, True),
+        ((0.0, 0.0, 0.0, 0.07), np.nan, False),
+    ],
+)
+def test_it_has_settled_when_it_does_not_leave_any_more(
+    distances: tuple[float, ...], settled: float, converged: bool
+) -> None:
+    judged = judgements(at(*distances), HERE, 0.5, 0)
+    assert judged.settled_s == pytest.approx([settled], nan_ok=True)
+    assert judged.converged.tolist() == [converged]
+
+
+def test_many_robots_at_once_are_judged_as_each_alone() -> None:
+    rng = np.random.default_rng(2)
+    truth = rng.normal(size=(30, 50, 3)).cumsum(axis=1) / 100
+    estimates = truth + rng.normal(size=truth.shape) / 10
+    claimed = np.broadcast_to(np.eye(3) / 100, (30, 50, 3, 3)).copy()
+    diverged = np.where(np.arange(30) % 7 == 3, 20.0, np.nan)
+    applied = rng.normal(size=(30, 50, 2))
+    for each in (truth, estimates, claimed, applied):
+        each[~np.isnan(diverged), 21:] = np.nan
+    record = Record(truth, estimates, claimed, applied, diverged)
+    together = judgements(record, HERE, 0.02, 5)
+    for robot in range(30):
+        ticks = 21 if diverged[robot] == 20 else 50
+        alone = Record(
+            *(each[robot : robot + 1, :ticks] for each in record[:4]),
+            diverged[robot : robot + 1],
+        )
+        for one, all_ in zip(judgements(alone, HERE, 0.02, 5), together, strict=True):
+            assert one[0] == pytest.approx(all_[robot], rel=1e-12, nan_ok=True)
