@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from laglab.runs.robot_side import robot_parameters
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario
-from laglab_control.batch import BatchController, Pose, Speeds
+from laglab_control.batch import BATCHED, BatchController, Pose, Speeds
 from laglab_fmu import Fleet
-from laglab_gateway.drive import FASTEST, Safety
+from laglab_gateway import IDEAL, Safety
+from laglab_gateway.drive import FASTEST
 
 Array = NDArray[np.float64]
 
@@ -38,6 +39,18 @@ class Many:
     """(robots,): the run ended because the estimate did."""
     unsure: NDArray[np.bool_]
     """(robots,): something happened that a batch cannot express; run them one by one."""
+
+
+def why_one_by_one(scenario: Scenario) -> str | None:
+    """What a batch cannot express of such runs; None: nothing."""
+    kind, link = scenario.estimator.kind, scenario.link
+    if kind not in BATCHED:
+        return f"{kind} has no form for many robots"
+    if scenario.plant.event:
+        return "the fleet's robots cannot be moved by hand"
+    if link.replay or link.event or link.command != IDEAL or link.measurement != IDEAL:
+        return "the link does not deliver everything on time"
+    return None if scenario.safety.link_timeout else "the robot stops at once"
 
 
 def run_many(scenarios: Sequence[Scenario]) -> Many:

@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from laglab.studies.many import why_one_by_one
 from laglab.studies.sweep.cell import Cell
 
 
@@ -17,5 +18,5 @@ class How(NamedTuple):
 
 def how(cell: Cell) -> How:
     """Known from the cell's description alone, without running anything."""
-    del cell
-    return How(False, "there is no batch form of it")
+    because = why_one_by_one(cell.scenario)
+    return How(because is None, because or "")
