@@ -8,16 +8,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab_control.batch import guard
-from laglab_control.batch.estimators import BATCHED, BatchEstimator, Estimate, Robots
+from laglab_control.batch.estimators import (
+    BATCHED,
+    BatchEstimator,
+    Correction,
+    Estimate,
+    Setting,
+)
 from laglab_control.batch.guard import Found
 from laglab_control.batch.law import Demands, drive, slowed, stand_still
 from laglab_control.batch.matrices import Symmetric
-from laglab_control.batch.rows import Pose, Row, Speeds, headings
+from laglab_control.batch.rows import Pose, Row, Speeds
+from laglab_control.batch.turning import Turned, TurnedWay, Turning, nowhere, step, way_of
 from laglab_control.controller import FAR, StationConfig
 from laglab_control.errors import ConfigError
 from laglab_control.estimators.family import estimator_kind
 from laglab_control.model import Matrix
-from laglab_control.motion import Motion, Way, joined_along
+from laglab_control.motion import Motion
 from laglab_control.past.sliding import SlidingProduct
 
 
@@ -28,7 +35,7 @@ class BatchControl(NamedTuple):
     """Its state."""
     found: Found | None
     """By the guards; None: there are none."""
-    in_flight: SlidingProduct[Speeds, Pose]
+    in_flight: SlidingProduct[Turned, TurnedWay]
     drive: Demands
     """The last commands."""
     lost: NDArray[np.bool_]
@@ -54,6 +61,9 @@ class BatchController:
     config: StationConfig
     initial_estimates: Matrix
     measurement_delay: int
+    exact: bool = True
+    """To the last bit, which takes twice the time; without noise it is the last bit that decides
+    where a robot at its goal looks."""
 
     def __post_init__(self) -> None:
         kind = self.config.estimator
@@ -68,12 +78,15 @@ class BatchController:
         return int(np.shape(self.initial_estimates)[1])
 
     @cached_property
-    def _robots(self) -> Robots:
-        return Robots(self.config.model)
+    def _turning(self) -> Turning:
+        return Turning(self.exact)
 
     @cached_property
     def _estimator(self) -> BatchEstimator[Any]:
-        return BATCHED[self.config.estimator](self._robots, self.measurement_delay)
+        x, y, theta = np.diag(self.config.model.R).tolist()
+        correction = Correction((x, y, theta))
+        setting = Setting(self._turning, correction, self.measurement_delay)
+        return BATCHED[self.config.estimator](setting)
 
     @cached_property
     def _predicts(self) -> bool:
@@ -85,18 +98,18 @@ class BatchController:
         P = np.asarray(self.config.initial_covariance)[np.triu_indices(3)]
         prior = Motion(x, y, theta, *[np.full(self.robots, each) for each in P])
         standing = stand_still(self.robots)
-        nowhere = Way(np.zeros(1), np.zeros(1), np.zeros(1))
-        in_flight: SlidingProduct[Speeds, Pose] = SlidingProduct(_joined, nowhere)
+        flight: SlidingProduct[Turned, TurnedWay]
+        flight = SlidingProduct(self._turning.joined, way_of(nowhere()))
         for _ in range(self.config.command_delay):
-            in_flight = in_flight.push(standing.speeds, self._robots.way(standing.speeds))
+            flight = _sent(flight, step(self.config.model, standing.speeds))
         found = guard.nothing_found(self.robots) if self.config.guard else None
         lost = np.zeros(self.robots, np.bool_)
-        return BatchControl(self._estimator.start(prior), found, in_flight, standing, lost)
+        return BatchControl(self._estimator.start(prior), found, flight, standing, lost)
 
     def advance(self, control: BatchControl) -> BatchControl:
         """One tick later: the last commands are on their way, those n ticks older were applied."""
-        sent = control.drive.speeds
-        applied, in_flight = control.in_flight.push(sent, self._robots.way(sent)).pop()
+        sent = step(self.config.model, control.drive.speeds)
+        applied, in_flight = _sent(control.in_flight, sent).pop()
         state = self._estimator.predict(control.estimator, applied)
         return control._replace(estimator=state, in_flight=in_flight)
 
@@ -110,23 +123,23 @@ class BatchController:
         estimate = self._estimator.estimate(state)
         if estimate is None:
             return BatchControl(state, found, in_flight, stand_still(self.robots), lost)
-        pose, P = estimate
+        (pose, _), P = estimate
         if P is not None and found is not None:
             P = guard.claimed(P, found)
         lost = lost | self._diverged(pose)
-        demands = self._command(Estimate(pose, P), in_flight, last, lost)
+        demands = self._command(Estimate(estimate.pose, P), in_flight, last, lost)
         return BatchControl(state, found, in_flight, demands, lost, pose, P)
 
     def _command(
         self,
         estimate: Estimate,
-        in_flight: SlidingProduct[Speeds, Pose],
+        in_flight: SlidingProduct[Turned, TurnedWay],
         last: Demands,
         lost: NDArray[np.bool_],
     ) -> Demands:
         (pose, P), law = estimate, self.config.law
-        there = _joined(pose, in_flight.product) if self._predicts else pose
-        speeds, at_goal = drive(law, there, last.at_goal)
+        there = self._turning.joined(pose, in_flight.product) if self._predicts else pose
+        speeds, at_goal = drive(law, there, last.at_goal, self.exact)
         if P is not None:
             speeds = slowed(law, speeds, P)
         if lost.any():
@@ -145,5 +158,7 @@ def _within(pose: Pose, x: Row | float, y: Row | float) -> NDArray[np.bool_]:
     return np.hypot(pose.x - x, pose.y - y) <= FAR
 
 
-def _joined(first: Pose, second: Pose) -> Pose:
-    return joined_along(headings(first.theta), first, second)
+def _sent(
+    flight: SlidingProduct[Turned, TurnedWay], sent: Turned
+) -> SlidingProduct[Turned, TurnedWay]:
+    return flight.push(sent, way_of(sent))

@@ -5,18 +5,16 @@ Each does what the one of its name does in `laglab_control.estimators`, where th
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import partial
 from typing import Any, NamedTuple, Protocol, TypeVar
-
-import numpy as np
 
 from laglab_control.batch import matrices
 from laglab_control.batch.matrices import IDENTITY, Square, Symmetric, covariance_of
-from laglab_control.batch.rows import Belief, Pose, Row, Speeds, difference, headings, pose_of
-from laglab_control.motion import Motion, Way, composed_along
+from laglab_control.batch.rows import Belief, Pose, Row, difference, headings, pose_of
+from laglab_control.batch.turning import Turned, TurnedWay, Turning, nowhere, turned, way_of
+from laglab_control.motion import Motion
 from laglab_control.past.log import Log, append, logged
 from laglab_control.past.sliding import SlidingProduct
-from laglab_control.robot import RobotModel
 
 
 class Compared(NamedTuple):
@@ -26,43 +24,25 @@ class Compared(NamedTuple):
     weights: Symmetric
 
 
-@dataclass(frozen=True, eq=False)
-class Robots:
-    """What the model says of many robots that are alike."""
+@dataclass(frozen=True)
+class Correction:
+    """(8) with a sensor of the pose, whose errors are independent: R is diagonal."""
 
-    model: RobotModel
-
-    @cached_property
-    def _noise(self) -> list[Row]:
-        return [np.array([each]) for each in self.model.noise]
-
-    @cached_property
-    def _variances(self) -> tuple[float, float, float]:
-        x, y, theta = np.diag(self.model.R).tolist()
-        return x, y, theta
-
-    def motion(self, u: Speeds) -> Belief:
-        """`RobotModel.motion`."""
-        Ts = self.model.sample_time
-        return Motion(Ts * u.v, np.zeros(1), Ts * u.omega, *self._noise)
-
-    def way(self, u: Speeds) -> Pose:
-        """`RobotModel.way`."""
-        Ts = self.model.sample_time
-        return Way(Ts * u.v, np.zeros(1), Ts * u.omega)
+    variances: tuple[float, float, float]
+    """The diagonal of R."""
 
     def weights(self, P: Symmetric) -> Symmetric:
-        """(P + R)^-1; R is diagonal."""
-        x, y, theta = self._variances
+        """S^-1 = (P + R)^-1."""
+        x, y, theta = self.variances
         xx, xy, xt, yy, yt, tt = P
         return matrices.inverse(Symmetric(xx + x, xy, xt, yy + y, yt, tt + theta))
 
-    def correct(self, prior: Belief, z: Pose) -> tuple[Belief, Compared]:
-        """(8): K = P S^-1, and P+ = P - P S^-1 P = R - R S^-1 R."""
+    def of(self, prior: Belief, z: Pose) -> tuple[Belief, Compared]:
+        """K = P S^-1, and P+ = P - P S^-1 P = R - R S^-1 R."""
         P = covariance_of(prior)
         v, W = difference(z, pose_of(prior)), self.weights(P)
         d = matrices.times_vector(matrices.whole(P), matrices.times_vector(matrices.whole(W), v))
-        x, y, t = self._variances
+        x, y, t = self.variances
         posterior = Motion(
             *(prior.x + d.x, prior.y + d.y, prior.theta + d.theta),
             *(x - x * x * W.xx, -x * y * W.xy, -x * t * W.xt),
@@ -71,22 +51,25 @@ class Robots:
         return posterior, Compared(v, W)
 
 
-def composed(first: Belief, second: Belief) -> Belief:
-    """Two windows in a row; of a belief and a window (27), over one tick or over many."""
-    return composed_along(headings(first.theta), first, second)
-
-
 class Estimate(NamedTuple):
     """Of the present."""
 
-    pose: Pose
+    pose: TurnedWay
     P: Symmetric | None
     """What is claimed for its error; None: nothing."""
 
 
-def estimate_of(belief: Belief) -> Estimate:
+def estimate_of(belief: Turned) -> Estimate:
     """In two parts."""
-    return Estimate(pose_of(belief), covariance_of(belief))
+    return Estimate(way_of(belief), covariance_of(belief.motion))
+
+
+class Setting(NamedTuple):
+    """What an estimator is told."""
+
+    turning: Turning
+    correction: Correction
+    measurement_delay: int
 
 
 S = TypeVar("S")
@@ -99,8 +82,8 @@ class BatchEstimator(Protocol[S]):
         """The prior of tick 0."""
         ...
 
-    def predict(self, state: S, u: Speeds) -> S:
-        """One tick further, with the inputs applied meanwhile."""
+    def predict(self, state: S, step: Turned) -> S:
+        """One tick further, by the motions that the inputs applied meanwhile make."""
         ...
 
     def correct(self, state: S, z: Pose) -> tuple[S, Compared | None]:
@@ -113,10 +96,10 @@ class BatchEstimator(Protocol[S]):
 
 
 class Delayed(NamedTuple):
-    """The EKF at the newest measurement's tick, and the inputs from there to the present."""
+    """The EKF at the newest measurement's tick, and the motions from there to the present."""
 
-    there: Belief
-    window: SlidingProduct[Speeds, Belief]
+    there: Turned
+    window: SlidingProduct[Turned, Turned]
     measured: bool
 
 
@@ -124,32 +107,33 @@ class Delayed(NamedTuple):
 class DelayedEkf(BatchEstimator[Delayed]):
     """`delayed-ekf`."""
 
-    robots: Robots
-    measurement_delay: int
+    setting: Setting
 
     def start(self, belief: Belief) -> Delayed:
-        nothing = Motion(*[np.zeros(1)] * 9)
-        return Delayed(belief, SlidingProduct(composed, nothing), measured=False)
+        composed = self.setting.turning.composed
+        return Delayed(turned(belief), SlidingProduct(composed, nowhere()), measured=False)
 
-    def predict(self, state: Delayed, u: Speeds) -> Delayed:
-        return state._replace(window=state.window.push(u, self.robots.motion(u)))
+    def predict(self, state: Delayed, step: Turned) -> Delayed:
+        there, window, measured = state
+        return Delayed(there, window.push(step, step), measured)
 
     def correct(self, state: Delayed, z: Pose) -> tuple[Delayed, Compared]:
         there, window, measured = state
         if measured:
-            u, window = window.pop()
-            there = composed(there, self.robots.motion(u))
-        there, compared = self.robots.correct(there, z)
-        return Delayed(there, window, measured=True), compared
+            step, window = window.pop()
+            there = self.setting.turning.composed(there, step)
+        belief, compared = self.setting.correction.of(there.motion, z)
+        return Delayed(turned(belief), window, measured=True), compared
 
     def estimate(self, state: Delayed) -> Estimate:
-        return estimate_of(composed(state.there, state.window.product))
+        there, window, _ = state
+        return estimate_of(self.setting.turning.composed(there, window.product))
 
 
 class Paper(NamedTuple):
     """The estimate, the priors of the last ticks, and M*'s factors since the oldest of them."""
 
-    belief: Belief
+    belief: Turned
     left: Square
     """I - K_k."""
     priors: Log[Belief]
@@ -161,33 +145,32 @@ class Paper(NamedTuple):
 class Popf(BatchEstimator[Paper]):
     """`popf`; `innovation_at_k`: `popf-printed`."""
 
-    robots: Robots
-    measurement_delay: int
+    setting: Setting
     innovation_at_k: bool = False
 
     def start(self, belief: Belief) -> Paper:
         window: SlidingProduct[None, Square] = SlidingProduct(_later_to_the_left, IDENTITY)
-        return Paper(belief, IDENTITY, logged(belief), window, length=0)
+        return Paper(turned(belief), IDENTITY, logged(belief), window, length=0)
 
-    def predict(self, state: Paper, u: Speeds) -> Paper:
+    def predict(self, state: Paper, step: Turned) -> Paper:
         before, left, priors, window, length = state
-        cosine, sine = headings(before.theta)
-        belief = composed_along((cosine, sine), before, self.robots.motion(u))
-        distance = self.robots.model.sample_time * u.v
-        factor = _stepped(distance * cosine, distance * sine, left)
-        window, length = window.push(None, factor), length + 1
-        if length > self.measurement_delay:
-            (_, window), length = window.pop(), length - 1
-        priors = append(priors, belief, self.measurement_delay + 1)
-        return Paper(belief, IDENTITY, priors, window, length)
+        m = self.setting.measurement_delay
+        belief, (cosine, sine) = self.setting.turning.composed(before, step), before.heading
+        distance = step.motion.x
+        window = window.push(None, _stepped(distance * cosine, distance * sine, left))
+        if length == m:
+            window = window.pop()[1]
+        priors = append(priors, belief.motion, m + 1)
+        return Paper(belief, IDENTITY, priors, window, min(length + 1, m))
 
     def correct(self, state: Paper, z: Pose) -> tuple[Paper, Compared]:
-        belief, _, priors, window, length = state
-        prior = priors.items[priors.length - 1 - self.measurement_delay]
+        (belief, _), _, priors, window, length = state
+        m, correction = self.setting.measurement_delay, self.setting.correction
+        prior = priors.items[priors.length - 1 - m]
         P_s = covariance_of(prior)
-        v, W = difference(z, pose_of(prior)), self.robots.weights(P_s)
+        v, W = difference(z, pose_of(prior)), correction.weights(P_s)
         cross = matrices.whole(P_s)
-        if self.measurement_delay:
+        if m:
             cross = matrices.product(window.product, cross)
         K = matrices.product(cross, matrices.whole(W))  # (24)
         seen = difference(z, pose_of(belief)) if self.innovation_at_k else v
@@ -195,7 +178,7 @@ class Popf(BatchEstimator[Paper]):
         P = matrices.less_outer(covariance_of(belief), K, cross)  # (23)
         belief = Motion(belief.x + d.x, belief.y + d.y, belief.theta + d.theta, *P)
         left = matrices.less_identity(K)
-        return Paper(belief, left, priors, window, length), Compared(v, W)
+        return Paper(turned(belief), left, priors, window, length), Compared(v, W)
 
     def estimate(self, state: Paper) -> Estimate:
         return estimate_of(state.belief)
@@ -216,21 +199,22 @@ def _stepped(dx: Row, dy: Row, left: Square) -> Square:
 
 
 @dataclass(frozen=True, eq=False)
-class Ekf(BatchEstimator[Belief]):
+class Ekf(BatchEstimator[Turned]):
     """`ekf`: takes z_{k-m} for z_k."""
 
-    robots: Robots
+    setting: Setting
 
-    def start(self, belief: Belief) -> Belief:
-        return belief
+    def start(self, belief: Belief) -> Turned:
+        return turned(belief)
 
-    def predict(self, state: Belief, u: Speeds) -> Belief:
-        return composed(state, self.robots.motion(u))
+    def predict(self, state: Turned, step: Turned) -> Turned:
+        return self.setting.turning.composed(state, step)
 
-    def correct(self, state: Belief, z: Pose) -> tuple[Belief, Compared]:
-        return self.robots.correct(state, z)
+    def correct(self, state: Turned, z: Pose) -> tuple[Turned, Compared]:
+        belief, compared = self.setting.correction.of(state.motion, z)
+        return turned(belief), compared
 
-    def estimate(self, state: Belief) -> Estimate:
+    def estimate(self, state: Turned) -> Estimate:
         return estimate_of(state)
 
 
@@ -238,22 +222,24 @@ class Ekf(BatchEstimator[Belief]):
 class Raw(BatchEstimator[Pose | None]):
     """`raw`: the newest measurement."""
 
+    setting: Setting
+
     def start(self, belief: Belief) -> None:
         return None
 
-    def predict(self, state: Pose | None, u: Speeds) -> Pose | None:
+    def predict(self, state: Pose | None, step: Turned) -> Pose | None:
         return state
 
     def correct(self, state: Pose | None, z: Pose) -> tuple[Pose, None]:
         return z, None
 
     def estimate(self, state: Pose | None) -> Estimate | None:
-        return None if state is None else Estimate(state, None)
+        return None if state is None else Estimate(TurnedWay(state, headings(state.theta)), None)
 
 
-BATCHED: Mapping[str, Callable[[Robots, int], BatchEstimator[Any]]] = {
-    "raw": lambda _, __: Raw(),
-    "ekf": lambda robots, _: Ekf(robots),
+BATCHED: Mapping[str, Callable[[Setting], BatchEstimator[Any]]] = {
+    "raw": Raw,
+    "ekf": Ekf,
     "popf": Popf,
     "popf-printed": partial(Popf, innovation_at_k=True),
     "delayed-ekf": DelayedEkf,

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab_control.batch.matrices import Symmetric
-from laglab_control.batch.rows import Pose, Row, Speeds, wrapped
+from laglab_control.batch.rows import Heading, Row, Speeds, headings, wrapped
+from laglab_control.batch.turning import TurnedWay
 from laglab_control.laws.aicardi import Law
 
 # numpy's own differ from those of `Law` in the last bit. Where there is no noise a robot comes so
@@ -32,13 +33,15 @@ def stand_still(robots: int) -> Demands:
     return Demands(Speeds(np.zeros(robots), np.zeros(robots)), np.zeros(robots, np.bool_))
 
 
-def drive(law: Law, pose: Pose, at_goal: NDArray[np.bool_]) -> Demands:
-    """`Law.drive`."""
-    x, y, theta = pose
+def drive(law: Law, there: TurnedWay, at_goal: NDArray[np.bool_], exact: bool = True) -> Demands:
+    """`Law.drive`; `exact`: to the last bit."""
+    x, y, theta = there.way
     x_goal, y_goal, theta_goal = law.goal
-    dx, dy = x_goal - x, y_goal - y
-    rho, psi = _polar_coordinates(dx, dy)
-    speeds = _polar(law, rho, wrapped(psi - theta), wrapped(psi - theta_goal))
+    offset = x_goal - x, y_goal - y
+    rho, psi = _polar_coordinates(*offset) if exact else (_length(*offset), _direction(*offset))
+    alpha, phi = wrapped(psi - theta), wrapped(psi - theta_goal)
+    ahead = headings(alpha) if exact else _seen(offset, rho, there.heading)
+    speeds = _polar(law, rho, alpha, ahead, phi)
     if law.goal_tolerance is None:
         at_goal = np.zeros(len(rho), np.bool_)
     else:
@@ -61,10 +64,27 @@ def slowed(law: Law, speeds: Speeds, P: Symmetric) -> Speeds:
     return Speeds(share * speeds.v, share * speeds.omega)
 
 
-def _polar(law: Law, rho: Row, alpha: Row, phi: Row) -> Speeds:
-    """(4)."""
-    forward = law.gamma * np.cos(alpha)
-    sinc = np.sin(alpha) / np.where(alpha == 0.0, 1.0, alpha) + (alpha == 0.0)
+def _length(dx: Row, dy: Row) -> Row:
+    return np.sqrt(dx * dx + dy * dy)
+
+
+def _direction(dx: Row, dy: Row) -> Row:
+    return np.arctan2(dy, dx)
+
+
+def _seen(offset: tuple[Row, Row], rho: Row, heading: Heading) -> Heading:
+    """Cosine and sine of the angle between the heading and (dx, dy)."""
+    (dx, dy), (c, s) = offset, heading
+    scale = 1 / rho
+    return (dx * c + dy * s) * scale, (dy * c - dx * s) * scale
+
+
+def _polar(law: Law, rho: Row, alpha: Row, ahead: Heading, phi: Row) -> Speeds:
+    """(4); `ahead`: cosine and sine of alpha."""
+    cosine, sine = ahead
+    forward = law.gamma * cosine
+    straight = alpha == 0.0
+    sinc = (sine + straight) / (alpha + straight)
     return Speeds(forward * rho, law.lambda_ * alpha + forward * sinc * (alpha + law.h * phi))
 
 

@@ -33,8 +33,12 @@ def wrapped(angle: Row) -> Row:
     return np.where(remainder <= -np.pi, np.pi, remainder)
 
 
-def headings(angle: Row) -> tuple[Row, Row]:
-    """Cosine and sine."""
+Heading = tuple[Row, Row]
+"""Cosine and sine of an angle of each robot."""
+
+
+def headings(angle: Row) -> Heading:
+    """Of these."""
     return np.cos(angle), np.sin(angle)
 
 

@@ -58,7 +58,9 @@ def run_many(scenarios: Sequence[Scenario]) -> Many:
     scenario, robots = scenarios[0], len(scenarios)
     last, link = scenario.must_end(), scenario.link
     starts = np.array([each.first_estimate() for each in scenarios]).T
-    controller = BatchController(station_config(scenario), starts, link.measurement_delay)
+    controller = BatchController(
+        station_config(scenario), starts, link.measurement_delay, exact=not scenario.noise
+    )
     many = _unwritten(last, robots)
     parameters = [robot_parameters(each) for each in scenarios]
     with Fleet.open(parameters) as fleet, np.errstate(all="ignore"):  # what diverges overflows
