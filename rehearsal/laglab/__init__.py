@@ -12,11 +12,22 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from laglab.errors import LaglabError, PlaceError, ResultsError, RunError, ScenarioError
+    from laglab.errors import (
+        LaglabError,
+        PlaceError,
+        ResultsError,
+        RunError,
+        ScenarioError,
+        StudyError,
+    )
     from laglab.interface import run
     from laglab.results.run import Run, open_run
     from laglab.results.summary import Summary
     from laglab.scenario import Scenario, load
+    from laglab.studies.sweep.loading import load_study
+    from laglab.studies.sweep.result import StudyResult, open_study
+    from laglab.studies.sweep.study import Study
+    from laglab.studies.sweep.sweeping import sweep
 
     __version__: str
 
@@ -26,12 +37,18 @@ _HOMES = {
     "ResultsError": "errors",
     "RunError": "errors",
     "ScenarioError": "errors",
+    "StudyError": "errors",
     "run": "interface",
     "Run": "results.run",
     "open_run": "results.run",
     "Summary": "results.summary",
     "Scenario": "scenario",
     "load": "scenario",
+    "Study": "studies.sweep.study",
+    "StudyResult": "studies.sweep.result",
+    "load_study": "studies.sweep.loading",
+    "open_study": "studies.sweep.result",
+    "sweep": "studies.sweep.sweeping",
 }
 
 __all__ = [
@@ -42,11 +59,17 @@ __all__ = [
     "RunError",
     "Scenario",
     "ScenarioError",
+    "Study",
+    "StudyError",
+    "StudyResult",
     "Summary",
     "__version__",
     "load",
+    "load_study",
     "open_run",
+    "open_study",
     "run",
+    "sweep",
 ]
 
 

@@ -21,6 +21,7 @@ from laglab.commands import (
     scenarios,
     serial,
     sides,
+    sweep,
     trust,
 )
 from laglab.commands.group import alone, group
@@ -62,6 +63,7 @@ app.command("compare")(compare.compare)
 app.command("consistency")(consistency.consistency)
 app.command("trust")(trust.trust)
 app.command("errata")(errata.errata)
+app.command("sweep")(sweep.sweep)
 app.command("gateway")(sides.gateway)
 app.command("controller")(sides.controller)
 app.command("serial")(serial.serial)

@@ -12,13 +12,15 @@ class Need(Enum):
     STEPPING = "gateway", ("fmpy",)
     DRAWING = "run", ("matplotlib",)
     REHEARSING = "run", ("fmpy", "matplotlib")
+    STUDYING = "study", ("fmpy", "pyarrow", "pandas")
+    SPREADING = "study", ("distributed",)
 
     def __init__(self, extra: str, modules: tuple[str, ...]) -> None:
         self.extra = extra
         self.modules = modules
 
 
-STEPPING, DRAWING, REHEARSING = Need
+STEPPING, DRAWING, REHEARSING, STUDYING, SPREADING = Need
 
 
 def require(need: Need) -> None:

@@ -17,11 +17,14 @@ from rich.progress import (
     TaskProgressColumn,
     TextColumn,
     TimeElapsedColumn,
+    TimeRemainingColumn,
 )
 
 from laglab.scenario import Scenario
 
 T = TypeVar("T")
+PACE_WINDOW = 300.0
+"""[s] A study's cells may take minutes each."""
 
 
 @contextmanager
@@ -36,6 +39,32 @@ def tracked(work: Iterable[T], total: int, title: str, unit: str) -> Iterator[T]
     """The same, shown as it comes."""
     with _bar(unit) as bar:
         yield from bar.track(work, total=total, description=title)
+
+
+@contextmanager
+def progress_of_study(
+    name: str, runs: int, cost: float, shown: bool = True
+) -> Iterator[Callable[[int, float], None]]:
+    """Shows the runs that it is told of, each time with what they cost: bar and time to go are by
+    the cost, of which the last minutes tell how fast it goes."""
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        TextColumn("run {task.fields[done]}/{task.fields[of]}", markup=False),
+        TimeElapsedColumn(),
+        TextColumn("to go"),
+        TimeRemainingColumn(),
+    )
+    with _shown(*columns, shown=shown, window=PACE_WINDOW) as bar:
+        task = bar.add_task(name, total=cost, done=0, of=runs)
+        done = 0
+
+        def told(some: int, theirs: float) -> None:
+            nonlocal done
+            done += some
+            bar.update(task, advance=theirs, done=done, refresh=True)
+
+        yield told
 
 
 @contextmanager
@@ -59,12 +88,15 @@ def _bar(unit: str, shown: bool = True) -> Progress:
     )
 
 
-def _shown(*columns: ProgressColumn, transient: bool = False, shown: bool = True) -> Progress:
+def _shown(
+    *columns: ProgressColumn, transient: bool = False, shown: bool = True, window: float = 30.0
+) -> Progress:
     console = Console(stderr=True)
     return Progress(
         *columns,
         console=console,
         auto_refresh=False,
         transient=transient,
+        speed_estimate_period=window,
         disable=not (shown and (console.is_terminal or console.is_jupyter)),
     )

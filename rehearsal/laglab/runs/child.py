@@ -1,11 +1,11 @@
-"""A function of ours in a process of its own: an order goes in, reports come out.
+"""A function of ours in a process of its own: orders go in, reports come out.
 
-Not `multiprocessing`, which runs the caller's own script again in every child. The order goes in on
-the child's standard input, which stays open: its end, whatever became of us, asks the child to
-end in order. Reports come out on its standard output, a line each; what else is printed there goes
-to standard error.
+Not `multiprocessing`, which runs the caller's own script again in every child. Orders go in on the
+child's standard input, a line each, which stays open: its end, whatever became of us, asks the
+child to end in order. Reports come out on its standard output, a line each; what else is printed
+there goes to standard error.
 
-    python -m laglab.runs.child MODULE:FUNCTION
+    python -m laglab.runs.child MODULE:FUNCTION once|again
 """
 
 import importlib
@@ -15,10 +15,10 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from io import FileIO
-from queue import Queue
+from queue import Empty, Queue
 from typing import Any, NamedTuple, NoReturn
 
 import msgspec
@@ -44,6 +44,13 @@ class Child:
     name: str
     process: "subprocess.Popen[bytes]"
 
+    def order(self, order: Struct) -> None:
+        """Another one, for a child that waits for more. One that is gone does not hear it."""
+        assert self.process.stdin is not None
+        with suppress(BrokenPipeError):
+            self.process.stdin.write(msgspec.json.encode(order) + b"\n")
+            self.process.stdin.flush()
+
     def stop(self) -> None:
         """Ask it to end in order."""
         assert self.process.stdin is not None
@@ -61,10 +68,15 @@ Inbox = Queue[Letter]
 
 
 @contextmanager
-def started(name: str, target: str, order: Struct, inbox: Inbox) -> Iterator[Child]:
-    """The function `target`, MODULE:FUNCTION, called with `order`; gone when the context ends."""
+def started(
+    name: str, target: str, order: Struct, inbox: Inbox, again: bool = False
+) -> Iterator[Child]:
+    """The function `target`, MODULE:FUNCTION, called with `order`; gone when the context ends.
+
+    `again`: with each order that comes after it, too.
+    """
     process = subprocess.Popen(
-        [sys.executable, "-m", "laglab.runs.child", target],
+        [sys.executable, "-m", "laglab.runs.child", target, "again" if again else "once"],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         start_new_session=True,  # a Ctrl-C in the terminal is for us, who end it
@@ -73,9 +85,7 @@ def started(name: str, target: str, order: Struct, inbox: Inbox) -> Iterator[Chi
     reader = threading.Thread(target=_read, args=(child, inbox), daemon=True)
     reader.start()
     try:
-        assert process.stdin is not None
-        process.stdin.write(msgspec.json.encode(order) + b"\n")
-        process.stdin.flush()
+        child.order(order)
         yield child
     finally:
         _end(process)
@@ -84,7 +94,8 @@ def started(name: str, target: str, order: Struct, inbox: Inbox) -> Iterator[Chi
 
 def _end(process: "subprocess.Popen[bytes]") -> None:
     assert process.stdin is not None
-    process.stdin.close()
+    with suppress(BrokenPipeError):
+        process.stdin.close()
     try:
         process.wait(LAST_CHANCE)
     except subprocess.TimeoutExpired:
@@ -107,18 +118,22 @@ def _how_it_ended(exit_code: int) -> str:
     return f"ended with exit code {exit_code} and no word"
 
 
-def main(target: str) -> None:
-    """In the child: call the function with the order that comes in."""
+def main(target: str, again: bool) -> None:
+    """In the child: call the function with the order that comes in, or with each."""
     signal.signal(signal.SIGINT, _leave)  # whatever our parent's parent had it ignore
     on_interrupt(_leave)
     with FileIO(os.dup(1), "wb") as out:
         os.dup2(2, 1)  # an FMU that prints must not disturb the reports
-        order = _first_line()
-        threading.Thread(target=_end_with_our_parent, daemon=True).start()
+        orders: Queue[bytes] = Queue()
+        orders.put(_line() or _leave())
+        threading.Thread(target=_read_on, args=(orders,), daemon=True).start()
         module, _, name = target.partition(":")
         function: Callable[[Any, Tell], None] = getattr(importlib.import_module(module), name)
         on_interrupt(signal.default_int_handler)
-        function(_order_of(function, order), lambda report: _tell(out, report))
+        while True:
+            function(_order_of(function, _next(orders)), lambda report: _tell(out, report))
+            if not again:
+                break
         on_interrupt(_leave)
 
 
@@ -127,15 +142,29 @@ def _leave(*_: object) -> NoReturn:
     os._exit(INTERRUPTED)
 
 
-def _first_line() -> bytes:
-    """Of standard input; read without a buffer, whose lock would outlive us at our end."""
+def _line() -> bytes:
+    """The next of standard input, empty at its end; read without a buffer, whose lock would outlive
+    us at our end."""
     line = b""
     while not line.endswith(b"\n"):
-        piece = os.read(0, 1 << 16)
+        piece = os.read(0, 1 << 16)  # nobody sends an order before the last one is done
         if not piece:
-            _leave()  # our parent is gone
+            return b""
         line += piece
     return line
+
+
+def _read_on(orders: Queue[bytes]) -> None:
+    """Whatever comes; at the end our parent is gone, or wants us to go."""
+    while line := _line():
+        orders.put(line)
+    signal.raise_signal(signal.SIGINT)
+
+
+def _next(orders: Queue[bytes]) -> bytes:
+    while True:
+        with suppress(Empty):
+            return orders.get(timeout=LOOK_UP)
 
 
 def _order_of(function: Callable[[Any, Tell], None], order: bytes) -> Struct:
@@ -154,14 +183,8 @@ def _tell(out: FileIO, report: Report) -> None:
         raise KeyboardInterrupt from None  # nobody waits for us any more
 
 
-def _end_with_our_parent() -> None:
-    while os.read(0, 1):
-        pass
-    signal.raise_signal(signal.SIGINT)
-
-
 if __name__ == "__main__":
     try:
-        main(sys.argv[1])
+        main(sys.argv[1], sys.argv[2] == "again")
     except KeyboardInterrupt:
         _leave()

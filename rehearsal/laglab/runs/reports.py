@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from msgspec import Meta, Raw, Struct
+from msgspec import Meta, Struct
 
 from laglab_gateway import LinkReport, TimingReport
 from laglab_station import StationReport
@@ -64,9 +64,10 @@ class Failed(Struct, frozen=True, tag=True):
 
 
 class Computed(Struct, frozen=True, tag=True):
-    """One of the jobs is done."""
+    """A job is done."""
 
-    answer: Raw
+    answer: bytes
+    """Pickled."""
 
 
 class Ended(Struct, frozen=True, tag=True):

@@ -1,91 +1,174 @@
-"""The jobs of a study, shared out among processes of our own."""
+"""The jobs of a study, done by processes of our own, or by whoever else does jobs."""
 
-import importlib
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack
+import pickle
+import threading
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Future
+from contextlib import suppress
 from queue import Empty, Queue
-from typing import Any, NamedTuple, TypeVar, get_type_hints
+from types import TracebackType
+from typing import Any, Protocol, Self, TypeVar
 
-import msgspec
-from msgspec import Raw, Struct
+from msgspec import Struct
 
 from laglab.errors import LaglabError, RunError
-from laglab.runs.child import LOOK_UP, Inbox, Tell, started
+from laglab.runs.child import LOOK_UP, Child, Inbox, Tell, started
 from laglab.runs.errors import SIDE_ERRORS
 from laglab.runs.reports import Computed, Ended, Failed
 
-Job = TypeVar("Job", bound=Struct)
-Answer = TypeVar("Answer", bound=Struct)
+Job = TypeVar("Job")
+Answer = TypeVar("Answer")
+MOST_DEATHS = 3
+"""A job at which so many workers have died is given up: it is likely to be the cause."""
+SOON = 0.1
+"""[s] So often a worker's thread looks whether all is over."""
 
 
-class Share(Struct, frozen=True):
-    """A worker's part of the jobs."""
+class Executor(Protocol):
+    """Whoever does jobs, such as those of `concurrent.futures`."""
 
-    function: str
-    """MODULE:FUNCTION, which does one."""
-    jobs: list[Raw]
+    def submit(self, function: Callable[[Job], Answer], job: Job, /) -> "Future[Answer]":
+        """Have it done."""
 
 
-class _Kinds(NamedTuple):
-    """What a function that does jobs takes and gives."""
+class Call(Struct, frozen=True):
+    """What a worker is told."""
 
-    job: type
-    answer: type
+    pickled: bytes
+    """A function at the top of a module, and its argument."""
 
-    @classmethod
-    def of(cls, function: Callable[[Any], Any]) -> "_Kinds":
-        hints = get_type_hints(function)
-        answer = hints.pop("return")
-        (job,) = hints.values()
-        return cls(job, answer)
+
+class _Asked:
+    """A job that somebody waits for."""
+
+    def __init__(self, function: Callable[[Any], Any], job: object) -> None:
+        self.call = Call(pickle.dumps((function, job)))
+        self.future: Future[Any] = Future()
+        self.deaths = 0
+
+
+class Processes:
+    """An executor: children of ours, each kept as long as the context lasts.
+
+    One that dies is replaced, and its job done again.
+    """
+
+    def __init__(self, workers: int) -> None:
+        self._asked: Queue[_Asked] = Queue()
+        self._over = threading.Event()
+        self._threads = [
+            threading.Thread(target=self._keep, args=(f"worker {number}",), daemon=True)
+            for number in range(1, workers + 1)
+        ]
+
+    def __enter__(self) -> Self:
+        for thread in self._threads:
+            thread.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Ends the children, whatever they are at."""
+        self._over.set()
+        for thread in self._threads:
+            thread.join()
+
+    def submit(self, function: Callable[[Job], Answer], job: Job, /) -> "Future[Answer]":
+        """Have it done by the next that is free."""
+        asked = _Asked(function, job)
+        self._asked.put(asked)
+        return asked.future
+
+    def _keep(self, name: str) -> None:
+        """A worker's thread."""
+        asked = self._next()
+        while asked:
+            inbox: Inbox = Queue()
+            with started(name, f"{__name__}:work", asked.call, inbox, again=True) as child:
+                asked = self._follow(child, inbox, asked)
+
+    def _next(self) -> _Asked | None:
+        while not self._over.is_set():
+            with suppress(Empty):
+                asked = self._asked.get(timeout=SOON)
+                if asked.future.set_running_or_notify_cancel():
+                    return asked
+        return None
+
+    def _follow(self, child: Child, inbox: Inbox, asked: _Asked) -> _Asked | None:
+        """From job to job, as long as the child lives; what is then to be done by another."""
+        while not self._over.is_set():
+            try:
+                _, report = inbox.get(timeout=SOON)
+            except Empty:
+                continue
+            if isinstance(report, Ended) and not _given_up(asked, report.how):
+                return asked
+            match report:
+                case Computed(answer):
+                    asked.future.set_result(pickle.loads(answer))
+                case Failed(reason):
+                    asked.future.set_exception(RunError(reason))
+            following = self._next()
+            if following is None or isinstance(report, Ended):
+                return following
+            asked = following
+            child.order(asked.call)
+        return None
+
+
+def _given_up(asked: _Asked, how: str) -> bool:
+    asked.deaths += 1
+    if asked.deaths < MOST_DEATHS:
+        return False
+    asked.future.set_exception(RunError(f"{how}, the {asked.deaths}rd at the same job"))
+    return True
+
+
+def work(call: Call, tell: Tell) -> None:
+    """In the worker: one job."""
+    try:
+        function, job = pickle.loads(call.pickled)
+        tell(Computed(pickle.dumps(function(job))))
+    except (LaglabError, *SIDE_ERRORS) as error:
+        tell(Failed(str(error), begun=True))
+
+
+def as_done(
+    executor: Executor, function: Callable[[Job], Answer], jobs: Iterable[Job], ahead: int
+) -> "Iterator[tuple[Job, Future[Answer]]]":
+    """The jobs, in the order in which they are done; at most so many are underway at once."""
+    done: Queue[tuple[Job, Future[Answer]]] = Queue()
+    underway = 0
+    for job in jobs:
+        future = executor.submit(function, job)
+        future.add_done_callback(lambda future, job=job: done.put((job, future)))  # type: ignore[misc]
+        underway += 1
+        if underway == ahead:
+            yield _first(done)
+            underway -= 1
+    for _ in range(underway):
+        yield _first(done)
+
+
+def _first(done: "Queue[tuple[Job, Future[Answer]]]") -> "tuple[Job, Future[Answer]]":
+    while True:
+        with suppress(Empty):
+            return done.get(timeout=LOOK_UP)
 
 
 def shared_out(
     function: Callable[[Job], Answer], jobs: Sequence[Job], workers: int
 ) -> Iterator[Answer]:
-    """The answers, in the order in which they are done.
+    """The answers of processes of our own, in the order in which they are done.
 
-    `function` stands at the top of a module. Raises RunError, when a worker fails or dies.
+    `function` stands at the top of a module. Raises RunError, when a job fails, or kills whoever
+    does it.
     """
-    inbox: Inbox = Queue()
-    kind = _Kinds.of(function).answer
-    target = f"{function.__module__}:{function.__qualname__}"
-    with ExitStack() as stack:
-        waiting = {}
-        for first in range(min(workers, len(jobs))):
-            share = Share(target, [Raw(msgspec.json.encode(job)) for job in jobs[first::workers]])
-            name = f"worker {first + 1}"
-            stack.enter_context(started(name, f"{__name__}:work", share, inbox))
-            waiting[name] = len(share.jobs)
-        while any(waiting.values()):
-            for answer in _arrived(inbox, waiting):
-                yield msgspec.json.decode(answer, type=kind)
-
-
-def _arrived(inbox: Inbox, waiting: dict[str, int]) -> Iterator[Raw]:
-    """What the next letter holds; counts it as no longer waited for."""
-    try:
-        child, report = inbox.get(timeout=LOOK_UP)
-    except Empty:
-        return
-    match report:
-        case Computed(answer):
-            waiting[child.name] -= 1
-            yield answer
-        case Failed(reason):
-            raise RunError(reason)
-        case Ended(how) if waiting[child.name]:
-            raise RunError(how)
-
-
-def work(share: Share, tell: Tell) -> None:
-    """In the worker."""
-    module, _, name = share.function.partition(":")
-    function = getattr(importlib.import_module(module), name)
-    kind = _Kinds.of(function).job
-    try:
-        for job in share.jobs:
-            answer = function(msgspec.json.decode(job, type=kind))
-            tell(Computed(Raw(msgspec.json.encode(answer))))
-    except (LaglabError, *SIDE_ERRORS) as error:
-        tell(Failed(str(error), begun=True))
+    with Processes(min(workers, len(jobs))) as processes:
+        for _, future in as_done(processes, function, jobs, ahead=2 * workers):
+            yield future.result()

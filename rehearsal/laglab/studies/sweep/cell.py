@@ -4,8 +4,9 @@ import hashlib
 import json
 import math
 from collections.abc import Iterator
-from functools import cached_property
+from functools import cached_property, lru_cache
 
+import msgspec
 import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
@@ -41,7 +42,7 @@ class Cell(Struct, frozen=True, dict=True):
     @cached_property
     def scenario(self) -> Scenario:
         """What all of the runs have in common. Raises: ScenarioError, ValidationError."""
-        fields = parsed(self.base)
+        fields: dict[str, object] = msgspec.msgpack.decode(_packed(self.base))
         for key, value in sorted(self.grid.items()):
             put(fields, key, value)
         return Scenario.model_validate(fields)
@@ -70,3 +71,9 @@ class Cell(Struct, frozen=True, dict=True):
         """Where in the grid it is, in a few words."""
         there = ", ".join(f"{key} = {value}" for key, value in self.grid.items())
         return there or f"seeds {self.seeds[0]} to {self.seeds[-1]}"
+
+
+@lru_cache(maxsize=16)
+def _packed(base: str) -> bytes:
+    """Many cells have the same, and TOML is slow to read."""
+    return msgspec.msgpack.encode(parsed(base))

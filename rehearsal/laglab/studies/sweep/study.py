@@ -9,12 +9,9 @@ from functools import cached_property
 from itertools import islice, product
 from pathlib import Path
 
-from pydantic import ValidationError
-
-from laglab.errors import ScenarioError, StudyError
+from laglab.errors import StudyError
 from laglab.scenario import Scenario, changed
 from laglab.scenario.explain import spelled
-from laglab.scenario.problems import first_problem
 from laglab.studies.sweep.cell import Cell
 from laglab.version import code_version
 
@@ -26,7 +23,7 @@ MOST_SEEDS = 250
 class Study:
     """A scenario, over the product of the grid's values and over seeds.
 
-    Raises StudyError, when something in it cannot be; of the cells' scenarios `check` says that.
+    Whether the cells' scenarios can be, `planned` says.
     """
 
     scenario: Scenario
@@ -67,27 +64,6 @@ class Study:
         """What the cells depend on besides their place in the grid: base, files and code."""
         told = [code_version(), self._base, sorted(self._files())]
         return hashlib.sha256(json.dumps(told).encode()).hexdigest()[:32]
-
-    def check(self) -> None:
-        """Every cell's scenario. Raises StudyError: one cannot be, or cannot be run again alike."""
-        first = len(self.seeds) and self.seeds[0]
-        for cell in self.cells():
-            if cell.seeds[0] == first:
-                self._check(cell)
-
-    def _check(self, cell: Cell) -> None:
-        try:
-            scenario = cell.scenario
-            scenario.must_end()
-        except ValidationError as error:
-            raise StudyError(f"{self.name}: with {cell.place}: {first_problem(error)}") from None
-        except ScenarioError as error:
-            raise StudyError(f"{self.name}: with {cell.place}: {error}") from None
-        if scenario.pace != "lockstep":
-            raise StudyError(
-                f"{self.name}: pace: must be lockstep in a study, whose runs are to come out the "
-                "same whenever they are made"
-            )
 
     @cached_property
     def _base(self) -> str:

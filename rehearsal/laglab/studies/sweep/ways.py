@@ -1,9 +1,16 @@
-"""Which way a cell's runs are made."""
+"""Which way a cell's runs are made, and about how long that takes."""
 
 from typing import NamedTuple
 
 from laglab.studies.many import why_one_by_one
 from laglab.studies.sweep.cell import Cell
+
+TICK_ALONE = 160e-6
+"""[s] A tick of a run by itself takes about so long, with both sides and the bytes between them."""
+TICK_OF_A_BATCH, TICK_IN_A_BATCH = 400e-6, 0.8e-6
+"""[s] A tick of however many robots, and what each of them adds."""
+RUN_ALONE = 0.02
+"""[s] Until the sides of a run are there."""
 
 
 class How(NamedTuple):
@@ -13,10 +20,18 @@ class How(NamedTuple):
     because: str = ""
 
     def __str__(self) -> str:
-        return "batch" if self.batch else f"one by one: {self.because}"
+        return "in a batch" if self.batch else f"one by one: {self.because}"
 
 
 def how(cell: Cell) -> How:
     """Known from the cell's description alone, without running anything."""
     because = why_one_by_one(cell.scenario)
     return How(because is None, because or "")
+
+
+def seconds(cell: Cell) -> float:
+    """[s] About how long it takes, on one core."""
+    ticks, robots = cell.scenario.must_end(), len(cell.seeds)
+    if how(cell).batch:
+        return ticks * (TICK_OF_A_BATCH + robots * TICK_IN_A_BATCH)
+    return robots * (RUN_ALONE + ticks * TICK_ALONE)

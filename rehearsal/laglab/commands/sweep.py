@@ -1,0 +1,90 @@
+"""``laglab sweep``."""
+
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from laglab.extras import STUDYING, require
+from laglab.progress import progress_of_study
+from laglab.scenario import assignment
+
+if TYPE_CHECKING:
+    from laglab.studies.workers import Executor
+
+MOST_WORKERS = 1024
+
+
+def sweep(
+    study: Annotated[
+        str | None,
+        typer.Argument(metavar="STUDY", help="A shipped study's name, or a TOML file."),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Where the results go; studies/STUDY otherwise."),
+    ] = None,
+    seeds: Annotated[
+        int | None, typer.Option(min=1, max=2**31 - 1, help="So many, whatever the study says.")
+    ] = None,
+    told: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="A key of its scenario; may be repeated."),
+    ] = None,
+    workers: Annotated[
+        int, typer.Option(min=0, max=MOST_WORKERS, help="Processes; 0: one a core.")
+    ] = 0,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(metavar="URL", help="A dask scheduler, tcp://HOST:PORT; local: one of ours."),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Compute again what is there.")] = False,
+    limit: Annotated[int, typer.Option(min=1, help="The most runs that are meant.")] = 1_000_000,
+) -> None:
+    """Run a scenario over a grid of its keys, and over seeds.
+
+    Without STUDY, list those that come with laglab. What has been computed is kept: the same
+    command goes on where the last one ended.
+    """
+    if study is None:
+        _list()
+        return
+    require(STUDYING)
+    from laglab.studies.sweep.folder import Folder
+    from laglab.studies.sweep.loading import load_study
+    from laglab.studies.sweep.plan import check_size, planned
+    from laglab.studies.sweep.report import strangers_told, summary
+    from laglab.studies.sweep.sweeping import compute
+
+    chosen = load_study(study, dict(map(assignment, told or [])), seeds)
+    check_size(chosen, limit)
+    planned(chosen)
+    folder = Folder.made(out or Path("studies") / chosen.name, chosen)
+    plan = planned(chosen, None if force else folder)
+    for line in strangers_told(chosen, folder):
+        typer.echo(line, err=True)
+    with (
+        progress_of_study(chosen.name, plan.runs, plan.seconds) as done,
+        _workers(scheduler, workers) as executor,
+    ):
+        compute(chosen, folder, executor, done, force)
+    Console().print(summary(chosen, folder, plan), markup=False, highlight=False)
+
+
+def _workers(scheduler: str | None, workers: int) -> "AbstractContextManager[Executor]":
+    from laglab.studies.sweep.cluster import cluster
+    from laglab.studies.sweep.sweeping import own_processes
+
+    return cluster(scheduler, workers) if scheduler else own_processes(workers)
+
+
+def _list() -> None:
+    from laglab.studies.sweep.loading import shipped_studies
+
+    table = Table("name", "runs", "over", "what it shows", box=None)
+    for name, study in shipped_studies().items():
+        table.add_row(name, str(study.runs), ", ".join(study.grid), study.description)
+    Console().print(table)

@@ -1,0 +1,111 @@
+"""A study's folder: `study.toml`, and a file for every cell that has been computed.
+
+A cell's file is named by its key, never changes, and is there whole or not at all. So what is still
+to be done is what has no file, and whoever works on the same folder at once does no harm.
+"""
+
+import time
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from laglab.errors import NoRunError
+from laglab.results.whole import BESIDE, whole_file
+from laglab.results.writable import folder_place
+from laglab.studies.sweep.cell import Cell
+from laglab.studies.sweep.compute import DESCRIPTION
+from laglab.studies.sweep.loading import study_of, to_toml
+from laglab.studies.sweep.study import Study
+
+STUDY_FILE = "study.toml"
+CELLS = "cells"
+ABANDONED = 3600.0
+"""[s] What has been half written for so long, nobody will finish."""
+
+
+@dataclass(frozen=True)
+class Folder:
+    """Where a study's cells are kept."""
+
+    path: Path
+
+    @classmethod
+    def made(cls, path: Path, study: Study) -> "Folder":
+        """For the study, from now on; what is there stays. Raises: PlaceError, ResultsError."""
+        folder_place("--out", path)
+        folder = cls(path)
+        for half in folder_place("--out", folder.cells).glob(BESIDE):
+            with suppress(OSError):
+                if time.time() - half.stat().st_mtime > ABANDONED:
+                    half.unlink()
+        text = to_toml(study, study.origin).encode()
+        if not (folder._study.is_file() and folder._study.read_bytes() == text):
+            with whole_file(folder._study, lasting=True) as file:
+                file.write(text)
+        return folder
+
+    @property
+    def cells(self) -> Path:
+        """The folder of their files."""
+        return self.path / CELLS
+
+    @property
+    def _study(self) -> Path:
+        return self.path / STUDY_FILE
+
+    def study(self) -> tuple[Study, str]:
+        """What it is of, and the origin of its cells. Raises: NoRunError, StudyError."""
+        try:
+            text = self._study.read_text(encoding="utf-8")
+        except (OSError, ValueError) as error:
+            said = getattr(error, "strerror", None) or error
+            raise NoRunError(f"{self._study} cannot be read: {said}") from error
+        return study_of(text, str(self._study), self.path / f"{self.path.resolve().name}.toml")
+
+    def file(self, cell: Cell) -> Path:
+        """Where it is, if it is there."""
+        return self.cells / f"{cell.key}.parquet"
+
+    def has(self, cell: Cell) -> bool:
+        """Whether it has been computed."""
+        return self.file(cell).is_file()
+
+    def keep(self, cell: Cell, content: bytes) -> None:
+        """For good. Raises ResultsError."""
+        with whole_file(self.file(cell), lasting=True) as file:
+            file.write(content)
+
+    def strangers(self, cells: Iterable[Cell]) -> list[Path]:
+        """The files that are of none of these cells."""
+        theirs = {path.name for path in self.cells.glob("*.parquet")}
+        for cell in cells:
+            theirs.discard(self.file(cell).name)
+        return sorted(self.cells / name for name in theirs)
+
+    def place_of(self, path: Path) -> str:
+        """Where in its grid the cell of a file is, and which file."""
+        try:
+            told = msgspec.json.decode(pq.read_schema(path).metadata[DESCRIPTION])
+        except (OSError, pa.ArrowException, KeyError, TypeError, msgspec.DecodeError):
+            return path.name
+        there = ", ".join(f"{key} = {value}" for key, value in told["grid"].items())
+        return f"{path.name} ({there})" if there else path.name
+
+    def table(self, cell: Cell, columns: list[str] | None = None) -> pa.Table:
+        """Of one that is there. Raises NoRunError."""
+        path = self.file(cell)
+        try:
+            return pq.read_table(path, columns=columns, partitioning=None)
+        except (OSError, pa.ArrowException) as error:
+            raise NoRunError(
+                f"{path} cannot be read: {error}: delete it, and sweep again"
+            ) from error
+
+    def tables(self, cells: Iterable[Cell], columns: list[str] | None = None) -> Iterator[pa.Table]:
+        """Of those that are there, one after the other. Raises NoRunError."""
+        return (self.table(cell, columns) for cell in cells if self.has(cell))

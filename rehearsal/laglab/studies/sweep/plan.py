@@ -1,0 +1,69 @@
+"""What a study asks for: known, and checked, before anything runs."""
+
+from collections import Counter
+from typing import NamedTuple
+
+from pydantic import ValidationError
+
+from laglab.errors import ScenarioError, StudyError
+from laglab.scenario.problems import first_problem
+from laglab.studies.sweep.cell import Cell
+from laglab.studies.sweep.folder import Folder
+from laglab.studies.sweep.study import Study
+from laglab.studies.sweep.ways import How, how, seconds
+
+MOST_RUNS = 1_000_000
+"""More than that are run only when somebody says that they are meant."""
+
+
+class Plan(NamedTuple):
+    """What is still to be done, summed up."""
+
+    ways: Counter[How]
+    """How many runs are to be made which way."""
+    seconds: float
+    """About how long they take, on one core."""
+
+    @property
+    def runs(self) -> int:
+        """All of them."""
+        return self.ways.total()
+
+
+def planned(study: Study, folder: Folder | None = None) -> Plan:
+    """Of the study's cells, those that are not in the folder. Raises StudyError: a cell's scenario,
+    wherever it is, cannot be."""
+    ways: Counter[How] = Counter()
+    cost = 0.0
+    for cell in study.cells():
+        check(study, cell)
+        if folder is None or not folder.has(cell):
+            ways[how(cell)] += len(cell.seeds)
+            cost += seconds(cell)
+    return Plan(ways, cost)
+
+
+def check_size(study: Study, limit: int = MOST_RUNS) -> None:
+    """Raises StudyError: there are too many runs."""
+    if study.runs > limit:
+        raise StudyError(
+            f"{study.name}: {study.runs} runs ({study.points} points of the grid, "
+            f"{len(study.seeds)} seeds), more than the limit of {limit}: take fewer values, or say "
+            f"--limit {study.runs}"
+        )
+
+
+def check(study: Study, cell: Cell) -> None:
+    """Raises StudyError: the scenario cannot be, or not be run again alike."""
+    try:
+        pace = cell.scenario.pace
+        cell.scenario.must_end()
+    except ValidationError as error:
+        raise StudyError(f"{study.name}: with {cell.place}: {first_problem(error)}") from None
+    except ScenarioError as error:
+        raise StudyError(f"{study.name}: with {cell.place}: {error}") from None
+    if pace != "lockstep":
+        raise StudyError(
+            f"{study.name}: pace: must be lockstep in a study, whose runs come out the same "
+            f"whenever they are made, not {pace}"
+        )

@@ -1,0 +1,56 @@
+"""What a worker is given at once: as many cells as are worth the way there and back."""
+
+import io
+from collections.abc import Iterable, Iterator
+
+import pyarrow.parquet as pq
+from msgspec import Struct
+
+from laglab.errors import RunError
+from laglab.studies.sweep.cell import Cell
+from laglab.studies.sweep.compute import computed
+from laglab.studies.sweep.ways import seconds
+from laglab.version import code_version
+
+WORTHWHILE = 0.3
+"""[s] A task takes so long or longer, where there are cells enough."""
+MOST_CELLS = 100
+
+
+class Task(Struct, frozen=True):
+    """Some cells, to be computed by the same code as that of whoever wants them."""
+
+    cells: tuple[Cell, ...]
+    code: str
+
+
+def grouped(cells: Iterable[Cell]) -> Iterator[Task]:
+    """In their order. Raises: ScenarioError."""
+    some: list[Cell] = []
+    cost = 0.0
+    for cell in cells:
+        some.append(cell)
+        cost += seconds(cell)
+        if cost >= WORTHWHILE or len(some) == MOST_CELLS:
+            yield Task(tuple(some), code_version())
+            some, cost = [], 0.0
+    if some:
+        yield Task(tuple(some), code_version())
+
+
+def done(task: Task) -> list[bytes]:
+    """Wherever it is done: each cell's table, as the contents of a Parquet file.
+
+    The same bytes for the same cell, as far as pyarrow is the same. Raises RunError.
+    """
+    if task.code != code_version():
+        raise RunError(
+            f"a worker has laglab {code_version()}, not {task.code} as here: install the same there"
+        )
+    return [_file(cell) for cell in task.cells]
+
+
+def _file(cell: Cell) -> bytes:
+    out = io.BytesIO()
+    pq.write_table(computed(cell), out)
+    return out.getvalue()
