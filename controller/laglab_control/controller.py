@@ -214,7 +214,7 @@ class Controller:
         """The input that the estimator is told."""
         return u
 
-    def _at_arrival(self, x: Vector, flight: Flight, drive: Demand) -> Way:
+    def _at_arrival(self, x: Vector, flight: Flight, drive: Demand) -> Way[float]:
         """(29): where the robot will be when the command that is now made comes into force."""
         pose = Way(*x.tolist())
         return joined(pose, flight.ahead) if self.kind.predicts else pose

@@ -90,7 +90,7 @@ class PrintedController(Controller):
         """v_c is the speed last commanded, which comes into force n ticks later."""
         return np.append(u, drive.v)
 
-    def _at_arrival(self, x: Vector, flight: Flight, drive: Demand) -> Way:
+    def _at_arrival(self, x: Vector, flight: Flight, drive: Demand) -> Way[float]:
         """(29), or as printed: u_{k+n-1} is not sent yet, so the last command there is, n times."""
         if Erratum.EXTRAPOLATION not in self.errata:
             return super()._at_arrival(x, flight, drive)

@@ -82,15 +82,15 @@ class Flight(NamedTuple):
     told: Told
     sums: Log[Sums]
     """Of v and omega over `sent`, up to each."""
-    in_flight: SlidingProduct[Vector, Way]
+    in_flight: SlidingProduct[Vector, Way[float]]
     """u_{tick-n} ... u_{tick-1}: standing still for what was sent before tick 0."""
-    ahead: Way
+    ahead: Way[float]
     """Where they lead."""
 
 
 def take_off(robot: Ways, command_delay: int) -> Flight:
     """Before the first command."""
-    nothing: SlidingProduct[Vector, Way] = SlidingProduct(joined, NOWHERE)
+    nothing: SlidingProduct[Vector, Way[float]] = SlidingProduct(joined, NOWHERE)
     flight = Flight(0, logged(), command_delay, Told(), logged(), nothing, NOWHERE)
     return _rebuilt(robot, flight)
 

@@ -1,62 +1,75 @@
 """(3) is a product in SE(2): any stretch of it is one rigid motion."""
 
-from typing import NamedTuple
+from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 
 from laglab_control.angle import direction
 from laglab_control.model import Matrix, Vector
 
+F = TypeVar("F", float, Vector)
+"""A number of one robot, or those of many."""
 
-class Motion(NamedTuple):
+
+class Motion(NamedTuple, Generic[F]):
     """A rigid motion in the frame of its start, and the covariance of its end in that frame.
 
-    Plain floats: at this size they are faster than arrays.
+    Of one robot in plain floats: at this size they are faster than arrays.
     """
 
-    x: float
-    y: float
-    theta: float
-    p_xx: float = 0.0
-    p_xy: float = 0.0
-    p_xt: float = 0.0
-    p_yy: float = 0.0
-    p_yt: float = 0.0
-    p_tt: float = 0.0
+    x: F
+    y: F
+    theta: F
+    p_xx: F
+    p_xy: F
+    p_xt: F
+    p_yy: F
+    p_yt: F
+    p_tt: F
 
 
-STILL = Motion(0.0, 0.0, 0.0)
+STILL = Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-class Way(NamedTuple):
+class Way(NamedTuple, Generic[F]):
     """Where a rigid motion leads, in the frame of its start; nothing of how surely."""
 
-    x: float
-    y: float
-    theta: float
+    x: F
+    y: F
+    theta: F
 
 
 NOWHERE = Way(0.0, 0.0, 0.0)
 
 
-def joined(first: Way, second: Way) -> Way:
+def joined(first: Way[float], second: Way[float]) -> Way[float]:
     """x_a . x_b, as in `compose`."""
+    return joined_along(direction(first.theta), first, second)
+
+
+def joined_along(heading: tuple[F, F], first: Way[F], second: Way[F]) -> Way[F]:
+    """The same, given the cosine and sine of first.theta."""
     x, y, theta = first
     along, across, turn = second
-    c, s = direction(theta)
+    c, s = heading
     dx, dy = c * along - s * across, s * along + c * across
     return Way(x + dx, y + dy, theta + turn)
 
 
-def compose(first: Motion, second: Motion) -> Motion:
+def compose(first: Motion[float], second: Motion[float]) -> Motion[float]:
     """x_a . x_b: `second` starts where `first` ends.
 
     P = J P_a J^T + T P_b T^T, where T turns by first.theta, and J = [1 0 -dy; 0 1 dx; 0 0 1] is
     the product of all A (31) on the way: it depends only on where the way leads, (dx, dy).
     """
+    return composed_along(direction(first.theta), first, second)
+
+
+def composed_along(heading: tuple[F, F], first: Motion[F], second: Motion[F]) -> Motion[F]:
+    """The same, given the cosine and sine of first.theta."""
     x, y, theta, a_xx, a_xy, a_xt, a_yy, a_yt, a_tt = first
     along, across, turn, b_xx, b_xy, b_xt, b_yy, b_yt, b_tt = second
-    c, s = direction(theta)
+    c, s = heading
     dx, dy = c * along - s * across, s * along + c * across
     cc, cs, ss = c * c, c * s, s * s
     return Motion(
@@ -72,7 +85,7 @@ def compose(first: Motion, second: Motion) -> Motion:
     )
 
 
-def moved(x: Vector, P: Matrix, motion: Motion) -> tuple[Vector, Matrix]:
+def moved(x: Vector, P: Matrix, motion: Motion[float]) -> tuple[Vector, Matrix]:
     """Where a pose x (3,) of covariance P (3, 3) gets by a motion: it is one from the origin."""
     start_x, start_y, start_theta = x.tolist()
     (xx, xy, xt), (_, yy, yt), (_, _, tt) = P.tolist()

@@ -15,7 +15,7 @@ from laglab_control.motion import Motion, Way, moved
 class Ways(Protocol):
     """What tells where a robot gets."""
 
-    def way(self, u: Vector) -> Way:
+    def way(self, u: Vector) -> Way[float]:
         """Where one tick with input u leads."""
         ...
 
@@ -60,12 +60,12 @@ class RobotModel:
         scale = self.sample_time * self.wheel_radius / 2
         return scale * np.array(((cosine, cosine), (sine, sine), (-turn, turn)))
 
-    def motion(self, u: Vector) -> Motion:
+    def motion(self, u: Vector) -> Motion[float]:
         """One tick of (3): g_k = (Ts v, 0, Ts omega), with W Q W^T as seen from the robot."""
         v, omega = u.tolist()
         return Motion(self.sample_time * v, 0.0, self.sample_time * omega, *self.noise)
 
-    def way(self, u: Vector) -> Way:
+    def way(self, u: Vector) -> Way[float]:
         """Where one tick of (3) leads."""
         v, omega = u.tolist()
         return Way(self.sample_time * v, 0.0, self.sample_time * omega)

@@ -21,7 +21,7 @@ Slopes = Sequence[tuple[float, float, float]]
 class Learned(NamedTuple):
     """A motion at b = `at` (p,), and how it depends on b."""
 
-    motion: Motion
+    motion: Motion[float]
     slopes: Slopes
     at: Sequence[float]
 
@@ -56,7 +56,7 @@ class CalibratedMotions:
         """g_k, and its derivatives."""
         return _step(self.robot, self.parameters, u, self.at)
 
-    def way(self, u: Vector) -> Way:
+    def way(self, u: Vector) -> Way[float]:
         """Where one tick leads."""
         return Way(*self.over(u).motion[:3])
 
@@ -144,7 +144,7 @@ def _step(robot: RobotModel, parameters: Parameters, u: Vector, b: Sequence[floa
     return Learned(motion, [(Ts * dv, 0.0, Ts * turn) for dv, turn in by], b)
 
 
-def _moved_to(window: Learned, b: Sequence[float]) -> Motion:
+def _moved_to(window: Learned, b: Sequence[float]) -> Motion[float]:
     """The window's motion at another b, to first order."""
     (x, y, theta, *noise), slopes, at = window
     for value, was, (by_x, by_y, by_theta) in zip(b, at, slopes, strict=True):
@@ -153,7 +153,7 @@ def _moved_to(window: Learned, b: Sequence[float]) -> Motion:
     return Motion(x, y, theta, *noise)
 
 
-def _moved(x: Sequence[float], motion: Motion, slopes: Slopes) -> Moved:
+def _moved(x: Sequence[float], motion: Motion[float], slopes: Slopes) -> Moved:
     """The motion turned by theta: A is J of `compose`, beside it the slopes turned."""
     start_x, start_y, theta = x[:3]
     along, across, turn, xx, xy, xt, yy, yt, tt = motion

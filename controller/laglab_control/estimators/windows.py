@@ -37,17 +37,17 @@ class RigidMotions:
     """For the robot: each window is one Motion, however long."""
 
     model: RobotModel
-    identity: Motion = STILL
+    identity: Motion[float] = STILL
 
-    def over(self, u: Vector) -> Motion:
+    def over(self, u: Vector) -> Motion[float]:
         """g_k."""
         return self.model.motion(u)
 
-    def compose(self, older: Motion, newer: Motion) -> Motion:
+    def compose(self, older: Motion[float], newer: Motion[float]) -> Motion[float]:
         """One after the other."""
         return compose(older, newer)
 
-    def carry(self, belief: Belief, window: Motion) -> Belief:
+    def carry(self, belief: Belief, window: Motion[float]) -> Belief:
         """All of (27) over the window at once."""
         return Belief(*moved(belief.x, belief.P, window))
 

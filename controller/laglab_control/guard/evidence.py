@@ -106,7 +106,7 @@ def lagging(evidence: Evidence, weights: Triangle, before: Lag | None) -> Lag | 
     if length % EVERY:
         return before
     worst = None
-    for count in _counts(length - 1):
+    for count in windows(length - 1):
         mean = _mean(items[length - 1 - count], items[length - 1], count)
         statistic = count * weighted(mean, weights)
         if statistic > (worst.statistic if worst else SUSPECT):
@@ -114,8 +114,8 @@ def lagging(evidence: Evidence, weights: Triangle, before: Lag | None) -> Lag | 
     return worst
 
 
-def _counts(there: int) -> list[int]:
-    """The windows for so many innovations: those that are full, and one that is not yet."""
+def windows(there: int) -> list[int]:
+    """The lengths of those for so many innovations: all that are full, and one that is not yet."""
     full = [count for count in DRIFTS if count <= there]
     return [*full, there] if full and there < DRIFTS[-1] and there not in full else full
 

@@ -60,7 +60,7 @@ def _ways(robots: int, ticks: int, stack: ExitStack) -> dict[str, Turn]:
         ways[f"{name}, {METHODS}"] = _slave_methods(version, ticks, stack)
         ways[f"{name}, simulate_fmu"] = _simulate(version, max(1, ticks // 5))
     ways[f"FMI 3, fleet of {robots}"] = _fleet(robots, fleet_ticks, stack)
-    ways[PLAIN] = _plain(robots, fleet_ticks, stack)
+    ways[PLAIN] = plain_loop(robots, fleet_ticks, stack)
     return ways
 
 
@@ -127,7 +127,7 @@ def _fleet(robots: int, ticks: int, stack: ExitStack) -> Turn:
     return timed(run, ticks * robots)
 
 
-def _plain(robots: int, ticks: int, stack: ExitStack) -> Turn:
+def plain_loop(robots: int, ticks: int, stack: ExitStack) -> Turn:
     sources = {
         name: text
         for name, text in c_files().items()

@@ -74,6 +74,21 @@ def loop(
     _run(loop_bench.bench(ticks, realtime, links), rounds, json)
 
 
+@app.command("study")
+def study(
+    robots: Annotated[int, typer.Option(min=1, help="Robots at once.")] = 1000,
+    ticks: TicksOption = 500,
+    rounds: RoundsOption = 3,
+    json: JsonOption = None,
+) -> None:
+    """A robot's tick: many at once, one by one, numpy by hand, plain C."""
+    require(STEPPING)
+    from laglab.bench import study as study_bench  # needs FMPy
+
+    with ExitStack() as stack:
+        _run(study_bench.bench(robots, ticks, stack), rounds, json)
+
+
 def _run(what: bench.Bench, rounds: int, json: Path | None) -> None:
     if json:
         file_place("--json", json)

@@ -8,9 +8,11 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from laglab.scenario.explain import spelled
+from laglab.studies.sweep.all_at_once import all_at_once
 from laglab.studies.sweep.cell import Cell
 from laglab.studies.sweep.judged import Judgements
 from laglab.studies.sweep.one_by_one import one_by_one
+from laglab.studies.sweep.ways import how
 
 DESCRIPTION = b"laglab.cell"
 """Where the table's metadata tell, as JSON, what the cell is."""
@@ -18,7 +20,7 @@ DESCRIPTION = b"laglab.cell"
 
 def computed(cell: Cell) -> pa.Table:
     """A row for each of the cell's seeds, in their order. Raises RunError."""
-    return table(cell, one_by_one(cell))
+    return table(cell, all_at_once(cell) if how(cell).batch else one_by_one(cell))
 
 
 def table(cell: Cell, judged: Judgements) -> pa.Table:

@@ -45,10 +45,11 @@ class Claiming(Controller):
 
 def one_by_one(cell: Cell) -> Judgements:
     """What became of every seed. Raises RunError."""
-    return joined([_judged(scenario) for scenario in cell.runs()])
+    return joined([judged_alone(scenario) for scenario in cell.runs()])
 
 
-def _judged(scenario: Scenario) -> Judgements:
+def judged_alone(scenario: Scenario) -> Judgements:
+    """What became of one run. Raises RunError."""
     claims: list[Array] = []
     record = _record(run(scenario, controller=partial(Claiming, claims=claims)), claims)
     m = scenario.link.measurement_delay

@@ -2,12 +2,13 @@
 
 from typing import NamedTuple
 
+from laglab.studies.many import why_one_by_one
 from laglab.studies.sweep.cell import Cell
 
 TICK_ALONE = 160e-6
 """[s] A tick of a run by itself takes about so long, with both sides and the bytes between them."""
-TICK_IN_BATCH = 1e-6
-"""[s] A tick of one robot of many."""
+TICK_OF_A_BATCH, TICK_IN_A_BATCH = 400e-6, 0.8e-6
+"""[s] A tick of however many robots, and what each of them adds."""
 RUN_ALONE = 0.02
 """[s] Until the sides of a run are there."""
 
@@ -24,12 +25,13 @@ class How(NamedTuple):
 
 def how(cell: Cell) -> How:
     """Known from the cell's description alone, without running anything."""
-    del cell
-    return How(False, "there is no batch form of it")
+    because = why_one_by_one(cell.scenario)
+    return How(because is None, because or "")
 
 
 def seconds(cell: Cell) -> float:
     """[s] About how long it takes, on one core."""
-    ticks = cell.scenario.must_end()
-    one = ticks * TICK_IN_BATCH if how(cell).batch else RUN_ALONE + ticks * TICK_ALONE
-    return len(cell.seeds) * one
+    ticks, robots = cell.scenario.must_end(), len(cell.seeds)
+    if how(cell).batch:
+        return ticks * (TICK_OF_A_BATCH + robots * TICK_IN_A_BATCH)
+    return robots * (RUN_ALONE + ticks * TICK_ALONE)

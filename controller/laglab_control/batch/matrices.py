@@ -1,0 +1,108 @@
+"""Matrices (3, 3) of many robots, element by element."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from laglab_control.batch.rows import Belief, Pose, Row
+from laglab_control.motion import Way
+
+
+class Symmetric(NamedTuple):
+    """The upper triangle."""
+
+    xx: Row
+    xy: Row
+    xt: Row
+    yy: Row
+    yt: Row
+    tt: Row
+
+
+class Square(NamedTuple):
+    """Row by row."""
+
+    xx: Row
+    xy: Row
+    xt: Row
+    yx: Row
+    yy: Row
+    yt: Row
+    tx: Row
+    ty: Row
+    tt: Row
+
+
+_ZERO, _ONE = np.zeros(1), np.ones(1)
+IDENTITY = Square(_ONE, _ZERO, _ZERO, _ZERO, _ONE, _ZERO, _ZERO, _ZERO, _ONE)
+
+
+def covariance_of(belief: Belief) -> Symmetric:
+    """P."""
+    return Symmetric(*belief[3:])
+
+
+def inverse(S: Symmetric) -> Symmetric:
+    """By cofactors; of positive definite ones."""
+    xx, xy, xt, yy, yt, tt = S
+    c_xx, c_xy, c_xt = yy * tt - yt * yt, xt * yt - xy * tt, xy * yt - xt * yy
+    scale = 1 / (xx * c_xx + xy * c_xy + xt * c_xt)
+    c_yy, c_yt, c_tt = xx * tt - xt * xt, xy * xt - xx * yt, xx * yy - xy * xy
+    return Symmetric(
+        c_xx * scale, c_xy * scale, c_xt * scale, c_yy * scale, c_yt * scale, c_tt * scale
+    )
+
+
+def weighted(v: Pose, weights: Symmetric) -> Row:
+    """v^T W v."""
+    x, y, t = v
+    xx, xy, xt, yy, yt, tt = weights
+    return x * (xx * x + 2 * (xy * y + xt * t)) + y * (yy * y + 2 * yt * t) + tt * t * t
+
+
+def times_vector(K: Square, v: Pose) -> Pose:
+    """K v."""
+    x, y, t = v
+    return Way(
+        K.xx * x + K.xy * y + K.xt * t,
+        K.yx * x + K.yy * y + K.yt * t,
+        K.tx * x + K.ty * y + K.tt * t,
+    )
+
+
+def whole(P: Symmetric) -> Square:
+    """With its lower triangle."""
+    xx, xy, xt, yy, yt, tt = P
+    return Square(xx, xy, xt, xy, yy, yt, xt, yt, tt)
+
+
+def product(A: Square, B: Square) -> Square:
+    """A B."""
+    return Square(
+        A.xx * B.xx + A.xy * B.yx + A.xt * B.tx,
+        A.xx * B.xy + A.xy * B.yy + A.xt * B.ty,
+        A.xx * B.xt + A.xy * B.yt + A.xt * B.tt,
+        A.yx * B.xx + A.yy * B.yx + A.yt * B.tx,
+        A.yx * B.xy + A.yy * B.yy + A.yt * B.ty,
+        A.yx * B.xt + A.yy * B.yt + A.yt * B.tt,
+        A.tx * B.xx + A.ty * B.yx + A.tt * B.tx,
+        A.tx * B.xy + A.ty * B.yy + A.tt * B.ty,
+        A.tx * B.xt + A.ty * B.yt + A.tt * B.tt,
+    )
+
+
+def less_outer(P: Symmetric, K: Square, cross: Square) -> Symmetric:
+    """P - K cross^T, which is symmetric."""
+    return Symmetric(
+        P.xx - (K.xx * cross.xx + K.xy * cross.xy + K.xt * cross.xt),
+        P.xy - (K.xx * cross.yx + K.xy * cross.yy + K.xt * cross.yt),
+        P.xt - (K.xx * cross.tx + K.xy * cross.ty + K.xt * cross.tt),
+        P.yy - (K.yx * cross.yx + K.yy * cross.yy + K.yt * cross.yt),
+        P.yt - (K.yx * cross.tx + K.yy * cross.ty + K.yt * cross.tt),
+        P.tt - (K.tx * cross.tx + K.ty * cross.ty + K.tt * cross.tt),
+    )
+
+
+def less_identity(K: Square) -> Square:
+    """I - K."""
+    return Square(1 - K.xx, -K.xy, -K.xt, -K.yx, 1 - K.yy, -K.yt, -K.tx, -K.ty, 1 - K.tt)

@@ -1,0 +1,47 @@
+"""Numbers of many robots: a row has one of each."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from laglab_control.model import Vector
+from laglab_control.motion import Motion, Way
+
+Row = Vector
+"""(robots,)"""
+Pose = Way[Row]
+"""[m, m, rad] of each robot."""
+Belief = Motion[Row]
+"""A pose of each robot and its claimed covariance: a motion from the origin."""
+
+
+class Speeds(NamedTuple):
+    """v [m/s], omega [rad/s] of each robot."""
+
+    v: Row
+    omega: Row
+
+
+def pose_of(belief: Belief) -> Pose:
+    """Without the covariance."""
+    return Way(belief.x, belief.y, belief.theta)
+
+
+def wrapped(angle: Row) -> Row:
+    """The same angles in (-pi, pi]; NaN where one is not finite."""
+    remainder = angle - 2 * np.pi * np.rint(angle / (2 * np.pi))
+    return np.where(remainder <= -np.pi, np.pi, remainder)
+
+
+Heading = tuple[Row, Row]
+"""Cosine and sine of an angle of each robot."""
+
+
+def headings(angle: Row) -> Heading:
+    """Of these."""
+    return np.cos(angle), np.sin(angle)
+
+
+def difference(z: Pose, x: Pose) -> Pose:
+    """z - x, its heading wrapped."""
+    return Way(z.x - x.x, z.y - x.y, wrapped(z.theta - x.theta))

@@ -1,0 +1,97 @@
+"""What a tick of a robot costs in a study: many at once, one by one, and in other hands."""
+
+from collections.abc import Sequence
+from contextlib import ExitStack
+from functools import partial
+
+import numpy as np
+
+from laglab.bench.fmu import PLAIN, plain_loop
+from laglab.bench.harness import Bench, Contest, Progress, Turn, microseconds, timed
+from laglab.bench.many_by_hand import Situation, many_by_hand
+from laglab.bench.result import Figure, Result
+from laglab.interface import run
+from laglab.runs.station_side import station_config
+from laglab.scenario import Scenario, load
+from laglab.studies.many import run_many
+
+AT_ONCE, ALONE, BY_HAND = "at once", "one by one", "numpy by hand"
+GUARDED = "at once, guarded"
+KINDS = ("delayed-ekf", "popf")
+FEW = 2
+"""Robots that a turn runs one by one."""
+DELAYS = ((10, 20), (100, 20), (10, 200))
+"""n and m: the first is the paper's, the others tell how the cost grows."""
+
+
+def bench(robots: int, ticks: int, stack: ExitStack) -> Bench:
+    """`lab` with each filter in its loop, from starts of their own, FMU steps included.
+
+    Raises:
+        FmuError: an FMU is not there, or there is no compiler for the plain C loop.
+    """
+    plain = plain_loop(robots, max(1, 20_000 // robots), stack)
+    cases = {
+        f"{kind} {n}/{m}": _ways(kind, (n, m), robots, ticks) | {PLAIN: plain}
+        for kind in KINDS
+        for n, m in DELAYS
+    }
+    contest = Contest("a robot's tick in a study", microseconds("robot-tick"), PLAIN, cases)
+    return Bench("study", [contest], _figures)
+
+
+def _ways(kind: str, delays: tuple[int, int], robots: int, ticks: int) -> dict[str, Turn]:
+    scenarios = _scenarios(kind, delays, robots, ticks)
+    ways = {AT_ONCE: timed(partial(run_many, scenarios), robots * ticks)}
+    if delays != DELAYS[0]:
+        return ways
+    guarded = [each.overridden({"estimator.guard": True}) for each in scenarios]
+    ways[GUARDED] = timed(partial(run_many, guarded), robots * ticks)
+    ways[ALONE] = timed(partial(_one_by_one, scenarios[:FEW]), FEW * ticks)
+    if kind == "delayed-ekf":
+        ways[BY_HAND] = timed(partial(_by_hand, scenarios, ticks), robots * ticks)
+    return ways
+
+
+def _scenarios(kind: str, delays: tuple[int, int], robots: int, ticks: int) -> list[Scenario]:
+    n, m = delays
+    overrides = {
+        "estimator.kind": kind,
+        "estimator.guard": False,
+        "estimator.initial_covariance": 1e-4,
+        "link.command_delay": n,
+        "link.measurement_delay": m,
+    }
+    lab = load("lab", overrides)
+    duration = (ticks - 1) * lab.sample_time
+    return [
+        lab.model_copy(update={"seed": seed, "duration": duration}) for seed in range(1, robots + 1)
+    ]
+
+
+def _one_by_one(scenarios: Sequence[Scenario]) -> None:
+    for scenario in scenarios:
+        run(scenario)
+
+
+def _by_hand(scenarios: Sequence[Scenario], ticks: int) -> None:
+    config, link = station_config(scenarios[0]), scenarios[0].link
+    starts = np.array([each.first_estimate() for each in scenarios])
+    situation = Situation(
+        config.model, config.law, link.command_delay, link.measurement_delay, ticks
+    )
+    many_by_hand(starts, scenarios[0].estimator.initial_covariance, situation)
+
+
+def _figures(results: Sequence[Result], _: Progress) -> list[Figure]:
+    (result,) = results
+    figures = []
+    for kind in KINDS:
+        paper, *others = (f"{kind} {n}/{m}" for n, m in DELAYS)
+        ours = result.fastest(paper, AT_ONCE)
+        alone = result.fastest(paper, ALONE)
+        figures.append(Figure(f"{kind}: {ALONE} to {AT_ONCE}", alone / ours, "×"))
+        for other in others:
+            growth = result.fastest(other, AT_ONCE) / ours
+            figures.append(Figure(f"{other} to {paper}", growth, "×"))
+    return figures
