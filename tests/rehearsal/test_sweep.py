@@ -6,9 +6,11 @@ import signal
 import subprocess
 import sys
 import time
+import tracemalloc
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -16,7 +18,8 @@ import laglab as lab
 from laglab.errors import RunError, StudyError
 from laglab.studies.sweep.loading import load_study, shipped_study_names
 from laglab.studies.sweep.plan import planned
-from laglab.studies.workers import Processes
+from laglab.studies.sweep.tasks import grouped
+from laglab.studies.workers import Processes, as_done
 
 from .studying import (
     CELLS,
@@ -199,6 +202,33 @@ def test_a_job_that_kills_whoever_does_it_is_given_up() -> None:
         with pytest.raises(RunError, match="exit code 7 and no word, three times at the same job"):
             deadly.result(40)
         assert harmless.result(20) == 3
+
+
+class AtOnce:
+    """Does a job when it is told to."""
+
+    def submit(self, function: Callable[[Any], Any], job: Any, /) -> "Future[Any]":
+        future: Future[Any] = Future()
+        future.set_result(function(job))
+        return future
+
+
+def memory_of(seeds: int) -> int:
+    """The most that planning and handing out take [bytes], and no less than there are cells."""
+    study = load_study("gains", {"duration": 1.0}, seeds)
+    tracemalloc.start()
+    try:
+        planned(study)
+        tasks = as_done(AtOnce(), id, grouped(study.cells()), ahead=100)
+        assert sum(len(task.cells) for task, _ in tasks) == study.cell_count
+        return tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+
+
+def test_memory_does_not_grow_with_the_study() -> None:
+    memory_of(250)  # what is loaded and cached only once
+    assert memory_of(1500) < 1.2 * memory_of(500)
 
 
 @pytest.mark.parametrize("name", shipped_study_names())
