@@ -57,6 +57,10 @@ class Told(NamedTuple):
     spread: float = 0.0
     """The standard deviation of the `recent` delays [ticks]."""
 
+    def usual_delay(self, otherwise: int) -> int:
+        """n, the median; before the first echo what was believed `otherwise`."""
+        return sorted(self.recent)[len(self.recent) // 2] if self.recent else otherwise
+
     @property
     def settled(self) -> int:
         """Up to this tick what was in force is known, but for a few ticks, or given up."""
@@ -117,17 +121,23 @@ def hear(
     if not (echoes or recalled):
         return flight, []
     tick, sent, n, told, sums, in_flight, ahead = flight
-    inputs = [Applied(echo.tick, echo.u) for echo in echoes] + list(recalled)
-    for echo in echoes:
-        told = _heard(told, echo, tick)
-    if told.missing:
-        told = _found(told, inputs, tick)
-    seen = sorted(told.recent)[len(told.recent) // 2] if told.recent else n
+    told, inputs = learned(told, tick, echoes, recalled)
+    seen = told.usual_delay(otherwise=n)
     flight = Flight(tick, sent, seen, told, sums, in_flight, ahead)
     if seen == n:
         return flight, inputs
     flight = _rebuilt(robot, flight)
     return flight, inputs + _believed(flight, since=told.known + 1)
+
+
+def learned(
+    told: Told, tick: int, echoes: Sequence[Echo], recalled: Sequence[Applied]
+) -> tuple[Told, list[Applied]]:
+    """With what came at `tick`; and the inputs that are known by it."""
+    inputs = [Applied(echo.tick, echo.u) for echo in echoes] + list(recalled)
+    for echo in echoes:
+        told = _heard(told, echo, tick)
+    return _found(told, inputs, tick) if told.missing else told, inputs
 
 
 def _heard(told: Told, echo: Echo, tick: int) -> Told:

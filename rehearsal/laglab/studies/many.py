@@ -10,10 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.runs.robot_side import robot_parameters
+from laglab.runs.robot_side import link_fates, robot_parameters
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario
+from laglab.studies.schedule import schedule_of
 from laglab_control.batch import BatchController, Pose, Speeds
+from laglab_control.batch.impaired import ImpairedController, Timetable
 from laglab_fmu import Fleet
 from laglab_gateway.drive import FASTEST, Safety
 
@@ -41,16 +43,21 @@ class Many:
 
 
 def run_many(scenarios: Sequence[Scenario]) -> Many:
-    """All of them to the end."""
-    scenario, robots = scenarios[0], len(scenarios)
-    last, link = scenario.must_end(), scenario.link
-    starts = np.array([each.first_estimate() for each in scenarios]).T
-    controller = BatchController(station_config(scenario), starts, link.measurement_delay)
-    many = _unwritten(last, robots)
+    """All of them to the end. There must be no reason to run them one by one (`why_one_by_one`)."""
+    scenario = scenarios[0]
+    many = _unwritten(scenario.must_end(), len(scenarios))
     parameters = [robot_parameters(each) for each in scenarios]
     with Fleet.open(parameters) as fleet, np.errstate(all="ignore"):  # what diverges overflows
-        _run(fleet, controller, scenario, many)
+        if is_ideal(scenario):
+            _run(fleet, scenarios, many)
+        else:
+            _run_impaired(fleet, scenarios, many)
     return many
+
+
+def is_ideal(scenario: Scenario) -> bool:
+    """Whether the link delivers everything on time, and the robot never has to stop by itself."""
+    return not link_fates(scenario) and scenario.safety.link_timeout > 0
 
 
 def _unwritten(last: int, robots: int) -> Many:
@@ -65,10 +72,16 @@ def _unwritten(last: int, robots: int) -> Many:
     )
 
 
-def _run(fleet: Fleet, controller: BatchController, scenario: Scenario, many: Many) -> None:
-    control = controller.start()
-    last = len(many.truth) - 1
+def _starts(scenarios: Sequence[Scenario]) -> Array:
+    """The first estimates (3, robots)."""
+    return np.array([each.first_estimate() for each in scenarios]).T
+
+
+def _run(fleet: Fleet, scenarios: Sequence[Scenario], many: Many) -> None:
+    scenario, last = scenarios[0], len(many.truth) - 1
     n, m = scenario.link.command_delay, scenario.link.measurement_delay
+    controller = BatchController(station_config(scenario), _starts(scenarios), m)
+    control = controller.start()
     measurements = deque[Pose]()
     commands = deque([control.drive.speeds] * n)
     wheels = Wheels(scenario)
@@ -90,6 +103,27 @@ def _run(fleet: Fleet, controller: BatchController, scenario: Scenario, many: Ma
             fleet.step(wheels.turning(applied))
     if control.found is not None:
         many.unsure[:] |= control.found.acts
+
+
+def _run_impaired(fleet: Fleet, scenarios: Sequence[Scenario], many: Many) -> None:
+    scenario, last = scenarios[0], len(many.truth) - 1
+    schedules = [schedule_of(each) for each in scenarios]
+    timetable = Timetable([each.course for each in schedules])
+    controller = ImpairedController(station_config(scenario), _starts(scenarios), timetable)
+    many.unsure[:] = [each.beyond for each in schedules]
+    wheels = Wheels(scenario)
+    for k in range(last + 1):
+        many.truth[k] = fleet.readings[:, :3].T
+        pose, P, sent, lost = controller.answer(Pose(*fleet.readings[:, 3:6].T))
+        if P is not None:  # as the station reports it
+            many.estimates[k], many.P[k] = pose, P
+        many.applied[k] = applied = controller.applied()
+        many.unsure[:] |= ~many.diverged & (controller.acts | refused(sent, scenario.safety))
+        ends = lost & ~many.diverged
+        many.last_tick[ends] = k
+        many.diverged[:] |= ends
+        if k < last:
+            fleet.step(wheels.turning(applied))
 
 
 def refused(speeds: Speeds, safety: Safety) -> NDArray[np.bool_]:

@@ -1,0 +1,161 @@
+"""The estimators for many robots whose measurements come when they do.
+
+Each does what the one of its name does in `laglab_control.estimators`. All robots go through the
+same ticks: those that had nothing to put right come to the same numbers again.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from laglab_control.batch.estimators import (
+    Compared,
+    Estimate,
+    Robots,
+    composed,
+    estimate_of,
+)
+from laglab_control.batch.impaired.past import Past
+from laglab_control.batch.impaired.record import Record
+from laglab_control.batch.impaired.sent import MOTION
+from laglab_control.batch.impaired.timetable import ArrivalsNow, Whole
+from laglab_control.batch.matrices import Symmetric
+from laglab_control.batch.rows import Belief
+from laglab_control.motion import Motion, Way
+
+
+class Weighed(NamedTuple):
+    """Measurements that arrive, and what each was compared with."""
+
+    arrivals: ArrivalsNow
+    compared: Compared
+
+
+class Estimator(Protocol):
+    """Goes from tick to tick."""
+
+    def go_on(self, tick: int, since: Whole) -> Sequence[Weighed]:
+        """To this tick, with all that arrived there, and right again where the inputs that led to
+        ticks from `since` (robots,) on were others than believed; what was compared meanwhile."""
+        ...
+
+    def estimate(self, tick: int) -> Estimate | None:
+        """Of this tick, the last that it went on to; None: there is none."""
+        ...
+
+
+class Raw(Estimator):
+    """`raw`: the newest measurement."""
+
+    def __init__(self, robots: Robots, record: Record, prior: Belief) -> None:
+        self._record = record
+        self._pose = np.full((3, record.timetable.robots), np.nan)
+
+    def go_on(self, tick: int, since: Whole) -> Sequence[Weighed]:
+        """No input matters."""
+        for arrivals in self._record.timetable.arrivals[tick]:
+            of = arrivals.robots[arrivals.newer]
+            self._pose[:, of] = np.stack(self._record.measured(arrivals))[:, arrivals.newer]
+        return []
+
+    def estimate(self, tick: int) -> Estimate | None:
+        """NaN where nothing has come yet."""
+        return Estimate(Way(*self._pose), None)
+
+
+class Ekf(Estimator):
+    """`ekf`: takes z_s for z_k."""
+
+    def __init__(self, robots: Robots, record: Record, prior: Belief) -> None:
+        timetable = record.timetable
+        self._robots, self._record, self._prior = robots, record, prior
+        self._beliefs = Past(timetable.reach + 2, MOTION, timetable.robots)
+
+    def go_on(self, tick: int, since: Whole) -> Sequence[Weighed]:
+        """From the first input that was wrong."""
+        weighed: list[Weighed] = []
+        for again in range(min(int(since.min()), tick), tick + 1):
+            weighed = self._go_through(again)
+        return weighed
+
+    def _go_through(self, tick: int) -> list[Weighed]:
+        belief = self._prior
+        if tick:
+            inputs = self._robots.motion(self._record.inputs(tick - 1))
+            belief = composed(Motion(*self._beliefs.at(tick - 1)), inputs)
+        self._beliefs.keep(tick, belief)
+        rows, weighed = self._beliefs.at(tick), []
+        for arrivals in self._record.timetable.arrivals[tick]:
+            newer = ArrivalsNow(*[each[arrivals.newer] for each in arrivals])
+            of, z = newer.robots, self._record.measured(newer)
+            posterior, compared = self._robots.correct(Motion(*rows[:, of]), z)
+            rows[:, of] = posterior
+            weighed.append(Weighed(newer, compared))
+        return weighed
+
+    def estimate(self, tick: int) -> Estimate:
+        """After its corrections."""
+        return estimate_of(Motion(*self._beliefs.at(tick).copy()))
+
+
+class DelayedEkf(Estimator):
+    """`delayed-ekf`: the EKF at the newest measurement's tick, and what was sent since."""
+
+    def __init__(self, robots: Robots, record: Record, prior: Belief) -> None:
+        timetable = record.timetable
+        depth = timetable.reach + 2
+        self._robots, self._record, self._prior = robots, record, prior
+        self._beliefs = Past(depth, MOTION, timetable.robots)
+        self._arrived = np.zeros((timetable.ticks, timetable.robots), np.bool_)
+        self._newest = np.zeros(timetable.robots, np.int64)
+        self._beliefs.keep(0, prior)
+
+    def go_on(self, tick: int, since: Whole) -> Sequence[Weighed]:
+        """From the oldest news to the newest measurement."""
+        first = since
+        news = self._record.timetable.arrivals[tick]
+        for arrivals in news:
+            robots, s, *_ = arrivals
+            self._arrived[s, robots] = True
+            first[robots] = np.minimum(first[robots], s)
+        behind = self._newest + 1
+        for arrivals in news:
+            robots, s, *_ = arrivals
+            self._newest[robots] = np.maximum(self._newest[robots], s)
+        first = np.minimum(first, behind)
+        begin = int(first.min(initial=tick + 1, where=first <= self._newest))
+        compared = {
+            again: self._go_through(again) for again in range(begin, int(self._newest.max()) + 1)
+        }
+        return [self._weighed(arrivals, compared) for arrivals in news]
+
+    def _go_through(self, tick: int) -> Compared:
+        prior = self._prior
+        if tick:
+            inputs = self._robots.motion(self._record.inputs(tick - 1))
+            prior = composed(Motion(*self._beliefs.at(tick - 1)), inputs)
+        posterior, compared = self._robots.correct(prior, self._record.z(tick))
+        there = self._arrived[tick]
+        if not there.all():
+            posterior = Motion(
+                *[np.where(there, *pair) for pair in zip(posterior, prior, strict=True)]
+            )
+        self._beliefs.keep(tick, posterior)
+        return compared
+
+    def _weighed(self, arrivals: ArrivalsNow, compared: dict[int, Compared]) -> Weighed:
+        v, weights = np.empty((3, len(arrivals.s))), np.empty((6, len(arrivals.s)))
+        for s in np.unique(arrivals.s).tolist():
+            here = arrivals.s == s
+            of = arrivals.robots[here]
+            for row, of_all in zip((*v, *weights), (*compared[s][0], *compared[s][1]), strict=True):
+                row[here] = of_all[of]
+        return Weighed(arrivals, Compared(Way(*v), Symmetric(*weights)))
+
+    def estimate(self, tick: int) -> Estimate:
+        """Carried on over what is believed of the inputs since."""
+        delay, everybody = self._record.timetable.delay[tick], self._record.everybody
+        there = self._beliefs.of(self._newest, everybody)
+        window = self._record.sent.motion(self._newest - delay, tick - delay)
+        return estimate_of(composed(Motion(*there), window))

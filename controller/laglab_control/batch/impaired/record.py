@@ -1,0 +1,53 @@
+"""What the stations of many robots have heard and believe, tick by tick."""
+
+import numpy as np
+
+from laglab_control.batch.impaired.past import Past
+from laglab_control.batch.impaired.sent import Sent
+from laglab_control.batch.impaired.timetable import ArrivalsNow, Timetable, Whole
+from laglab_control.batch.rows import Pose, Speeds
+from laglab_control.motion import Way
+
+
+class Record:
+    """All that estimators are told."""
+
+    def __init__(self, timetable: Timetable, sent: Sent) -> None:
+        self.timetable = timetable
+        self.sent = sent
+        self.everybody = np.arange(timetable.robots)
+        self._sampled = np.empty((timetable.ticks, 3, timetable.robots))
+        self._inputs = Past(timetable.reach + 2, 2, timetable.robots)
+
+    def sample(self, tick: int, z: Pose) -> None:
+        """z_k, which will arrive when it does."""
+        self._sampled[tick] = z
+
+    def believe(self, tick: int) -> None:
+        """That on [t_{k-1}, t_k) the command made n ticks before was in force."""
+        made = tick - 1 - self.timetable.delay[tick - 1]
+        self._inputs.keep(tick - 1, self.sent.commands(made, self.everybody))
+
+    def put_right(self, tick: int) -> Whole:
+        """What was believed wrongly; the first of each robot's ticks that was reached by an input
+        that was another one, the next tick where there is none."""
+        robots, j, tokens = self.timetable.news[tick]
+        since = np.full(self.timetable.robots, tick + 1)
+        if len(j):
+            right = np.stack(self.sent.inputs_of(tokens, robots))
+            wrong = (self._inputs.of(j, robots) != right).any(axis=0)
+            self._inputs.put(j, robots, right)
+            np.minimum.at(since, robots[wrong], j[wrong] + 1)
+        return since
+
+    def inputs(self, tick: int) -> Speeds:
+        """In force on [t_k, t_{k+1}), as known by now."""
+        return Speeds(*self._inputs.at(tick))
+
+    def measured(self, arrivals: ArrivalsNow) -> Pose:
+        """The poses that have arrived."""
+        return Way(*self._sampled[arrivals.s, :, arrivals.robots].T)
+
+    def z(self, tick: int) -> Pose:
+        """z_k of all robots, arrived or not."""
+        return Way(*self._sampled[tick])
