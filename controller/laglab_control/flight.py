@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from operator import mul
 from typing import NamedTuple
 
 import numpy as np
@@ -157,8 +158,8 @@ def _heard(told: Told, echo: Echo, tick: int) -> Told:
 
 
 def _deviation(delays: tuple[int, ...]) -> float:
-    mean = sum(delays) / len(delays)
-    return math.sqrt(sum((each - mean) ** 2 for each in delays) / len(delays))
+    count, total = len(delays), sum(delays)
+    return math.sqrt(count * sum(map(mul, delays, delays)) - total**2) / count
 
 
 def _found(told: Told, inputs: Sequence[Applied], tick: int) -> Told:

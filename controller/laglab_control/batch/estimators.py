@@ -174,7 +174,7 @@ class Popf(BatchEstimator[Paper]):
         cosine, sine = headings(before.theta)
         belief = composed_along((cosine, sine), before, self.robots.motion(u))
         distance = self.robots.model.sample_time * u.v
-        factor = matrices.sheared(distance * cosine, distance * sine, left)
+        factor = _stepped(distance * cosine, distance * sine, left)
         window, length = window.push(None, factor), length + 1
         if length > self.measurement_delay:
             (_, window), length = window.pop(), length - 1
@@ -203,6 +203,16 @@ class Popf(BatchEstimator[Paper]):
 
 def _later_to_the_left(older: Square, newer: Square) -> Square:
     return matrices.product(newer, older)
+
+
+def _stepped(dx: Row, dy: Row, left: Square) -> Square:
+    """A (31) times `left`, one factor of (21)."""
+    xx, xy, xt, yx, yy, yt, tx, ty, tt = left
+    return Square(
+        *(xx - dy * tx, xy - dy * ty, xt - dy * tt),
+        *(yx + dx * tx, yy + dx * ty, yt + dx * tt),
+        *(tx, ty, tt),
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -37,12 +37,6 @@ _ZERO, _ONE = np.zeros(1), np.ones(1)
 IDENTITY = Square(_ONE, _ZERO, _ZERO, _ZERO, _ONE, _ZERO, _ZERO, _ZERO, _ONE)
 
 
-def identities(robots: int) -> Square:
-    """One of each robot."""
-    one, zero = np.ones(robots), np.zeros(robots)
-    return Square(one, zero, zero, zero, one, zero, zero, zero, one)
-
-
 def covariance_of(belief: Belief) -> Symmetric:
     """P."""
     return Symmetric(*belief[3:])
@@ -112,13 +106,3 @@ def less_outer(P: Symmetric, K: Square, cross: Square) -> Symmetric:
 def less_identity(K: Square) -> Square:
     """I - K."""
     return Square(1 - K.xx, -K.xy, -K.xt, -K.yx, 1 - K.yy, -K.yt, -K.tx, -K.ty, 1 - K.tt)
-
-
-def sheared(dx: Row, dy: Row, K: Square) -> Square:
-    """[1 0 -dy; 0 1 dx; 0 0 1] K: A (31) of a way (dx, dy), times K."""
-    xx, xy, xt, yx, yy, yt, tx, ty, tt = K
-    return Square(
-        *(xx - dy * tx, xy - dy * ty, xt - dy * tt),
-        *(yx + dx * tx, yy + dx * ty, yt + dx * tt),
-        *(tx, ty, tt),
-    )

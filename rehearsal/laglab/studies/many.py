@@ -14,7 +14,7 @@ from laglab.runs.robot_side import link_fates, robot_parameters
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario
 from laglab.studies.schedule import schedule_of
-from laglab_control.batch import BatchController, Pose, Speeds
+from laglab_control.batch import BATCHED, BatchController, Pose, Speeds
 from laglab_control.batch.impaired import ImpairedController, Timetable
 from laglab_fmu import Fleet
 from laglab_gateway.drive import FASTEST, Safety
@@ -53,6 +53,27 @@ def run_many(scenarios: Sequence[Scenario]) -> Many:
         else:
             _run_impaired(fleet, scenarios, many)
     return many
+
+
+def why_one_by_one(scenario: Scenario) -> str | None:
+    """Why a run of that scenario cannot be one of many; None when it can."""
+    link = scenario.link
+    reasons = {
+        f"there is no {scenario.estimator.kind} for many robots": (
+            scenario.estimator.kind not in BATCHED
+        ),
+        "somebody moves the robot (plant.event)": bool(scenario.plant.event),
+        "the run does not end by itself (duration)": scenario.last_tick is None,
+        "the clock paces it (pace)": scenario.pace != "lockstep",
+        "what the link does depends on the bytes (bit_error_rate, bandwidth)": (
+            link.replay is None
+            and any(
+                each.reads_bytes
+                for each in (link.command, link.measurement, *[event.link for event in link.event])
+            )
+        ),
+    }
+    return next((reason for reason, holds in reasons.items() if holds), None)
 
 
 def is_ideal(scenario: Scenario) -> bool:

@@ -17,6 +17,7 @@ from laglab.scenario import Scenario
 from laglab_control.batch.impaired import Arrivals, Course, Missing, News, Tokens
 from laglab_control.estimators.interface import Applied, by_sampling
 from laglab_control.flight import MEMORY, Told, learned
+from laglab_control.model import Vector
 from laglab_gateway.drive import Drive, Safety, follow, rejection, speeds, supervise
 from laglab_gateway.link.channel import Channel
 from laglab_gateway.memory import Owed, SpeedMemory
@@ -149,7 +150,7 @@ class _Station:
             self._told, inputs = learned(self._told, tick, told, recalled(answers, 0, tick))
             self._put_right(tick, inputs, record)
         self._arrive(tick, measurements, record)
-        record.keep(tick, self._told, self._delay)
+        record.keep(self._told, self._delay)
         return [
             each
             for each in self._questions.ask(self._told, 0, tick, ROBOT)
@@ -195,11 +196,11 @@ class _Record:
         self.arrivals: list[tuple[int, int, bool, bool]] = []
         self._missing: list[tuple[int, ...]] = []
         self._told: list[tuple[int, int, int, float]] = []
-        self._in_force: list[Token] = []
-        self._before: list[Token] = []
+        self._in_force: list[Vector] = []
+        self._before: list[Vector] = []
 
-    def keep(self, tick: int, told: Told, delay: int) -> None:
-        """What is known after what came at `tick`."""
+    def keep(self, told: Told, delay: int) -> None:
+        """What is known after what came at a tick."""
         usual = -1 if told.usual is None else told.usual
         self._told.append((delay, usual, told.known, told.spread))
         self._in_force.append(told.in_force)
@@ -228,10 +229,10 @@ class _Record:
         )
 
 
-def _tokens(tokens: Iterable[object]) -> Tokens:
+def _tokens(tokens: Iterable[Token] | Iterable[Vector]) -> Tokens:
     commands, shares = np.array(list(tokens), np.float64).T
     return _in_two(commands, shares)
 
 
-def _in_two(commands: "np.ndarray", shares: "np.ndarray") -> Tokens:
+def _in_two(commands: Vector, shares: Vector) -> Tokens:
     return Tokens(commands.astype(np.int64), shares)

@@ -93,9 +93,10 @@ class Doubts:
         robots, j = self.timetable.missing[tick]
         v, omega = self.sent.inputs(_at(self.timetable.before, tick))
         believed = self.sent.commands(j - self.timetable.delay[tick][robots], robots)
-        distance = np.bincount(robots, believed.v - v[robots], count)
-        turn = np.bincount(robots, believed.omega - omega[robots], count)
         missing = np.bincount(robots, minlength=count)
+        distance, turn = np.zeros(count), np.zeros(count)
+        np.add.at(distance, robots, believed.v - v[robots])
+        np.add.at(turn, robots, believed.omega - omega[robots])
         return Missed(Ts * distance, Ts * turn, Ts * missing * abs(v))
 
 

@@ -40,8 +40,8 @@ class Estimator(Protocol):
         ticks from `since` (robots,) on were others than believed; what was compared meanwhile."""
         ...
 
-    def estimate(self, tick: int) -> Estimate | None:
-        """Of this tick, the last that it went on to; None: there is none."""
+    def estimate(self, tick: int) -> Estimate:
+        """Of this tick, the last that it went on to; NaN where there is none."""
         ...
 
 
@@ -55,11 +55,11 @@ class Raw(Estimator):
     def go_on(self, tick: int, since: Whole) -> Sequence[Weighed]:
         """No input matters."""
         for arrivals in self._record.timetable.arrivals[tick]:
-            of = arrivals.robots[arrivals.newer]
-            self._pose[:, of] = np.stack(self._record.measured(arrivals))[:, arrivals.newer]
+            newer = arrivals.chosen(arrivals.newer)
+            self._pose[:, newer.robots] = self._record.measured(newer)
         return []
 
-    def estimate(self, tick: int) -> Estimate | None:
+    def estimate(self, tick: int) -> Estimate:
         """NaN where nothing has come yet."""
         return Estimate(Way(*self._pose), None)
 
@@ -73,26 +73,30 @@ class Ekf(Estimator):
         self._beliefs = Past(timetable.reach + 2, MOTION, timetable.robots)
 
     def go_on(self, tick: int, since: Whole) -> Sequence[Weighed]:
-        """From the first input that was wrong."""
-        weighed: list[Weighed] = []
-        for again in range(min(int(since.min()), tick), tick + 1):
-            weighed = self._go_through(again)
-        return weighed
+        """Each from its first input that was wrong."""
+        for again in range(int(since.min(initial=tick)), tick):
+            self._go_through(again, np.flatnonzero(since <= again))
+        return self._go_through(tick, self._record.everybody)
 
-    def _go_through(self, tick: int) -> list[Weighed]:
+    def _go_through(self, tick: int, robots: Whole) -> list[Weighed]:
         belief = self._prior
         if tick:
-            inputs = self._robots.motion(self._record.inputs(tick - 1))
-            belief = composed(Motion(*self._beliefs.at(tick - 1)), inputs)
-        self._beliefs.keep(tick, belief)
-        rows, weighed = self._beliefs.at(tick), []
-        for arrivals in self._record.timetable.arrivals[tick]:
-            newer = ArrivalsNow(*[each[arrivals.newer] for each in arrivals])
-            of, z = newer.robots, self._record.measured(newer)
-            posterior, compared = self._robots.correct(Motion(*rows[:, of]), z)
-            rows[:, of] = posterior
-            weighed.append(Weighed(newer, compared))
+            before = Motion(*self._beliefs.at(tick - 1)[:, robots])
+            belief = composed(before, self._robots.motion(self._record.inputs_of(tick - 1, robots)))
+        self._beliefs.keep_of(tick, robots, belief)
+        weighed = []
+        for arrivals in self._record.timetable.arrivals_of(tick, robots):
+            newer = arrivals.chosen(arrivals.newer)
+            weighed.append(Weighed(newer, self._correct(tick, newer)))
         return weighed
+
+    def _correct(self, tick: int, arrivals: ArrivalsNow) -> Compared:
+        rows, of = self._beliefs.at(tick), arrivals.robots
+        posterior, compared = self._robots.correct(
+            Motion(*rows[:, of]), Way(*self._record.measured(arrivals))
+        )
+        rows[:, of] = posterior
+        return compared
 
     def estimate(self, tick: int) -> Estimate:
         """After its corrections."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from laglab_control.batch.impaired.past import Past
+from laglab_control.batch.impaired.past import Past, Rows
 from laglab_control.batch.impaired.sent import Sent
 from laglab_control.batch.impaired.timetable import ArrivalsNow, Timetable, Whole
 from laglab_control.batch.rows import Pose, Speeds
@@ -44,9 +44,14 @@ class Record:
         """In force on [t_k, t_{k+1}), as known by now."""
         return Speeds(*self._inputs.at(tick))
 
-    def measured(self, arrivals: ArrivalsNow) -> Pose:
-        """The poses that have arrived."""
-        return Way(*self._sampled[arrivals.s, :, arrivals.robots].T)
+    def inputs_of(self, tick: int, robots: Whole) -> Speeds:
+        """Of these robots."""
+        return Speeds(*self._inputs.at(tick)[:, robots])
+
+    def measured(self, arrivals: ArrivalsNow) -> Rows:
+        """The poses that have arrived (3, n)."""
+        z: Rows = self._sampled[arrivals.s, :, arrivals.robots].T
+        return z
 
     def z(self, tick: int) -> Pose:
         """z_k of all robots, arrived or not."""

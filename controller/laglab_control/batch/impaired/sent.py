@@ -50,7 +50,7 @@ class Sent:
 
     def commands(self, ticks: Whole, robots: Whole) -> Speeds:
         """Made at these ticks; before tick 0: standing still."""
-        return self.inputs_of(Tokens(np.maximum(ticks, 0), ticks >= 0), robots)
+        return self.inputs_of(Tokens(np.maximum(ticks, 0), (ticks >= 0).astype(np.float64)), robots)
 
     def sums(self, first: Whole, last: Whole) -> Speeds:
         """Of the commands made at the ticks from `first` to before `last`."""

@@ -99,6 +99,11 @@ class ArrivalsNow(NamedTuple):
     newer: Flags
     settled: Flags
 
+    def chosen(self, these: Flags) -> "ArrivalsNow":
+        """Only these."""
+        robots, s, newer, settled = self
+        return ArrivalsNow(robots[these], s[these], newer[these], settled[these])
+
 
 class MissingNow(NamedTuple):
     """Of one tick."""
@@ -127,6 +132,20 @@ class Timetable:
         """So many ticks back anything at all refers."""
         self.least_delay = min(each.least_delay for each in courses)
         """No measurement takes fewer ticks."""
+
+    def arrivals_of(self, tick: int, robots: Whole) -> list[ArrivalsNow]:
+        """The `arrivals` of these robots at a tick."""
+        arrivals = self.arrivals[tick]
+        if len(robots) == self.robots:
+            return arrivals
+        chosen = np.zeros(self.robots, np.bool_)
+        chosen[robots] = True
+        of_these = []
+        for each in arrivals:
+            kept = chosen[each.robots]
+            if kept.any():
+                of_these.append(each.chosen(kept))
+        return of_these
 
     def _order(self, ticks: Sequence[Whole]) -> tuple[Whole, Whole, Whole]:
         """The robots, and the order by ticks, of what is known robot by robot; and the bounds of
@@ -162,13 +181,9 @@ class Timetable:
         settled = np.concatenate([each.settled for each in arrivals])[order]
         by_tick = []
         for a, b in zip(at[:-1].tolist(), at[1:].tolist(), strict=True):
-            turn = _turns(robots[a:b])
-            by_tick.append(
-                [
-                    ArrivalsNow(*[each[a:b][turn == i] for each in (robots, s, newer, settled)])
-                    for i in range(int(turn.max()) + 1 if b > a else 0)
-                ]
-            )
+            now = ArrivalsNow(robots[a:b], s[a:b], newer[a:b], settled[a:b])
+            turn = _turns(now.robots)
+            by_tick.append([now.chosen(turn == i) for i in range(int(turn.max(initial=-1)) + 1)])
         return by_tick
 
 
@@ -182,4 +197,3 @@ def _stacked(tokens: Sequence[Tokens]) -> Tokens:
         np.stack([each.commands for each in tokens], axis=1),
         np.stack([each.shares for each in tokens], axis=1),
     )
-
