@@ -17,11 +17,12 @@ from laglab_control.batch.estimators import (
     estimate_of,
 )
 from laglab_control.batch.impaired.past import Past
+from laglab_control.batch.impaired.predicted import predicted
 from laglab_control.batch.impaired.record import Record
 from laglab_control.batch.impaired.sent import MOTION
 from laglab_control.batch.impaired.timetable import ArrivalsNow, Whole
 from laglab_control.batch.matrices import Symmetric
-from laglab_control.batch.rows import Belief
+from laglab_control.batch.rows import Belief, headings
 from laglab_control.motion import Motion, Way
 
 
@@ -82,7 +83,8 @@ class Ekf(Estimator):
         belief = self._prior
         if tick:
             before = Motion(*self._beliefs.at(tick - 1)[:, robots])
-            belief = composed(before, self._robots.motion(self._record.inputs_of(tick - 1, robots)))
+            u = self._record.inputs_of(tick - 1, robots)
+            belief = predicted(self._robots.model, before, headings(before.theta), u)
         self._beliefs.keep_of(tick, robots, belief)
         weighed = []
         for arrivals in self._record.timetable.arrivals_of(tick, robots):
@@ -137,8 +139,9 @@ class DelayedEkf(Estimator):
     def _go_through(self, tick: int) -> Compared:
         prior = self._prior
         if tick:
-            inputs = self._robots.motion(self._record.inputs(tick - 1))
-            prior = composed(Motion(*self._beliefs.at(tick - 1)), inputs)
+            before = Motion(*self._beliefs.at(tick - 1))
+            u = self._record.inputs(tick - 1)
+            prior = predicted(self._robots.model, before, headings(before.theta), u)
         posterior, compared = self._robots.correct(prior, self._record.z(tick))
         there = self._arrived[tick]
         if not there.all():

@@ -8,12 +8,13 @@ from laglab_control.batch.estimators import Compared, Estimate, Robots, estimate
 from laglab_control.batch.impaired.estimators import Estimator, Weighed
 from laglab_control.batch.impaired.factors import Factors
 from laglab_control.batch.impaired.past import Past, PastMatrices, Rows, Stack
+from laglab_control.batch.impaired.predicted import predicted
 from laglab_control.batch.impaired.record import Record
 from laglab_control.batch.impaired.sent import MOTION
 from laglab_control.batch.impaired.timetable import ArrivalsNow, Whole
 from laglab_control.batch.matrices import Symmetric, covariance_of
 from laglab_control.batch.rows import Belief, headings, wrapped
-from laglab_control.motion import Motion, Way, composed_along
+from laglab_control.motion import Motion, Way
 
 IDENTITY = np.eye(3)
 WHOLE = np.array([0, 1, 2, 1, 3, 4, 2, 4, 5])
@@ -70,7 +71,7 @@ class Popf(Estimator):
         F[:, 0] -= distance * sine[:, None] * F[:, 2]  # A (31) times the product of I - K
         F[:, 1] += distance * cosine[:, None] * F[:, 2]
         self._factors.keep(j, robots, F)
-        return composed_along((cosine, sine), before, self._robots.motion(u))
+        return predicted(self._robots.model, before, (cosine, sine), u)
 
     def _correct(self, tick: int, arrivals: ArrivalsNow) -> Rows:
         """(28); gives the innovations."""
