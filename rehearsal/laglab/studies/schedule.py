@@ -15,7 +15,7 @@ import numpy as np
 from laglab.runs.robot_side import link_fates
 from laglab.scenario import Scenario
 from laglab_control.batch.impaired import Arrivals, Course, Missing, News, Tokens
-from laglab_control.estimators.interface import Applied, by_sampling
+from laglab_control.estimators.interface import Applied
 from laglab_control.flight import MEMORY, Told, learned
 from laglab_control.model import Vector
 from laglab_gateway.drive import Drive, Safety, follow, rejection, speeds, supervise
@@ -30,7 +30,7 @@ from laglab_protocol import (
     Recall,
 )
 from laglab_protocol import Applied as Recalled
-from laglab_station.hearing import echoes, measured, recalled
+from laglab_station.hearing import echoes, recalled
 from laglab_station.recalling import Questions
 
 ROBOT = ROBOT_SYSTEM, ROBOT_COMPONENT
@@ -122,8 +122,6 @@ class _Robot:
         share, _ = speeds(self._drive, tick, self._sample_time, self._safety)
         self.in_force = (float(self._drive.command_tick), share) if share else STANDING
         self._memory.keep(tick, self.in_force)
-        self._commands.take_log()
-        self._measurements.take_log()
 
 
 class _Station:
@@ -151,11 +149,7 @@ class _Station:
             self._put_right(tick, inputs, record)
         self._arrive(tick, measurements, record)
         record.keep(self._told, self._delay)
-        return [
-            each
-            for each in self._questions.ask(self._told, 0, tick, ROBOT)
-            if isinstance(each, Recall)
-        ]
+        return self._questions.ask(self._told, 0, tick, ROBOT)
 
     def _sent(self, tick: int) -> Token:
         """What is believed to be in force at `tick`."""
@@ -175,7 +169,7 @@ class _Station:
 
     def _arrive(self, tick: int, messages: list[Measurement], record: "_Record") -> None:
         settled = self._told.settled if messages else -1
-        for s, _ in by_sampling(measured(messages, 0, tick), tick):
+        for s in sorted([message.tick for message in messages]):
             if s not in self._seen:
                 self._seen.add(s)
                 record.arrivals.append((tick, s, s > self._newest, s <= settled + 1))

@@ -82,7 +82,7 @@ class Ekf(Estimator):
     def _go_through(self, tick: int, robots: Whole) -> list[Weighed]:
         belief = self._prior
         if tick:
-            before = Motion(*self._beliefs.at(tick - 1)[:, robots])
+            before = Motion(*self._beliefs.of(tick - 1, robots))
             u = self._record.inputs_of(tick - 1, robots)
             belief = predicted(self._robots.model, before, headings(before.theta), u)
         self._beliefs.keep_of(tick, robots, belief)
@@ -93,11 +93,9 @@ class Ekf(Estimator):
         return weighed
 
     def _correct(self, tick: int, arrivals: ArrivalsNow) -> Compared:
-        rows, of = self._beliefs.at(tick), arrivals.robots
-        posterior, compared = self._robots.correct(
-            Motion(*rows[:, of]), Way(*self._record.measured(arrivals))
-        )
-        rows[:, of] = posterior
+        before, z = self._beliefs.of(tick, arrivals.robots), self._record.measured(arrivals)
+        posterior, compared = self._robots.correct(Motion(*before), Way(*z))
+        self._beliefs.keep_of(tick, arrivals.robots, posterior)
         return compared
 
     def estimate(self, tick: int) -> Estimate:

@@ -64,7 +64,7 @@ class Popf(Estimator):
 
     def _predicted(self, j: int, robots: Whole) -> Belief:
         """(27) from tick j to the next, and F_j."""
-        before = Motion(*self._beliefs.at(j)[:, robots])
+        before = Motion(*self._beliefs.of(j, robots))
         cosine, sine = headings(before.theta)
         u, F = self._record.inputs_of(j, robots), self._left.of(j, robots)
         distance = (self._robots.model.sample_time * u.v)[:, None]
@@ -76,13 +76,14 @@ class Popf(Estimator):
     def _correct(self, tick: int, arrivals: ArrivalsNow) -> Rows:
         """(28); gives the innovations."""
         of, s, z = arrivals.robots, arrivals.s, self._record.measured(arrivals)
-        prior, rows = self._priors.of(s, of), self._beliefs.at(tick)
+        prior, belief = self._priors.of(s, of), self._beliefs.of(tick, of)
         v, left = _less(z, prior), self._left.of(tick, of)
         cross = self._since(tick, arrivals, left) @ _whole(prior[3:])
         K = cross @ self._weights.of(s, of)  # (24)
-        seen = _less(z, self._priors.at(tick)[:, of]) if self._innovation_at_k else v
-        rows[:3, of] += (K @ seen.T[:, :, None])[:, :, 0].T
-        rows[3:, of] -= _upper(K @ cross.transpose(0, 2, 1))  # (23)
+        seen = _less(z, self._priors.of(tick, of)) if self._innovation_at_k else v
+        belief[:3] += (K @ seen.T[:, :, None])[:, :, 0].T
+        belief[3:] -= _upper(K @ cross.transpose(0, 2, 1).copy())  # (23)
+        self._beliefs.keep_of(tick, of, belief)
         self._left.keep(tick, of, left - K @ left)
         return v
 
@@ -115,11 +116,11 @@ def _less(z: Rows, prior: Rows) -> Rows:
 
 def _whole(P: Rows) -> Stack:
     """(6, robots) as matrices."""
-    matrices: Stack = P[WHOLE].T.reshape(-1, 3, 3)
+    matrices: Stack = P.take(WHOLE, axis=0).T.reshape(-1, 3, 3)
     return matrices
 
 
 def _upper(P: Stack) -> Rows:
     """And back."""
-    rows: Rows = P.reshape(-1, 9).T[UPPER]
+    rows: Rows = P.reshape(-1, 9).take(UPPER, axis=1).T
     return rows

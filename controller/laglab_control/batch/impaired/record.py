@@ -16,12 +16,12 @@ class Record:
         self.timetable = timetable
         self.sent = sent
         self.everybody = np.arange(timetable.robots)
-        self._sampled = np.empty((timetable.ticks, 3, timetable.robots))
+        self._sampled = Past(timetable.ticks, 3, timetable.robots)
         self._inputs = Past(timetable.reach + 2, 2, timetable.robots)
 
     def sample(self, tick: int, z: Pose) -> None:
         """z_k, which will arrive when it does."""
-        self._sampled[tick] = z
+        self._sampled.keep(tick, z)
 
     def believe(self, tick: int) -> None:
         """That on [t_{k-1}, t_k) the command made n ticks before was in force."""
@@ -46,13 +46,12 @@ class Record:
 
     def inputs_of(self, tick: int, robots: Whole) -> Speeds:
         """Of these robots."""
-        return Speeds(*self._inputs.at(tick)[:, robots])
+        return Speeds(*self._inputs.of(tick, robots))
 
     def measured(self, arrivals: ArrivalsNow) -> Rows:
         """The poses that have arrived (3, n)."""
-        z: Rows = self._sampled[arrivals.s, :, arrivals.robots].T
-        return z
+        return self._sampled.of(arrivals.s, arrivals.robots)
 
     def z(self, tick: int) -> Pose:
         """z_k of all robots, arrived or not."""
-        return Way(*self._sampled[tick])
+        return Way(*self._sampled.at(tick))

@@ -25,7 +25,7 @@ class Sent:
     def __init__(self, robots: Robots, count: int, ticks: int, reach: int) -> None:
         """`reach`: how many ticks back a stretch begins at most."""
         self._robots, self._everybody, self._reach = robots, np.arange(count), reach
-        self._speeds = np.zeros((ticks, 2, count))
+        self._speeds = Past(ticks, 2, count)
         self._led = Past(reach + 2, MOTION + 2, count)
         standing = robots.motion(Speeds(np.zeros(count), np.zeros(count)))
         for tick in range(-reach, 1):
@@ -34,7 +34,7 @@ class Sent:
 
     def push(self, tick: int, u: Speeds) -> None:
         """The commands of this tick."""
-        self._speeds[tick] = u
+        self._speeds.keep(tick, u)
         *led, v, omega = self._led.at(tick)
         further = composed(Motion(*led), self._robots.motion(u))
         self._led.keep(tick + 1, [*further, v + u.v, omega + u.omega])
@@ -45,7 +45,7 @@ class Sent:
 
     def inputs_of(self, tokens: Tokens, robots: Whole) -> Speeds:
         """Of these."""
-        v, omega = self._speeds[tokens.commands, :, robots].T
+        v, omega = self._speeds.of(tokens.commands, robots)
         return Speeds(tokens.shares * v, tokens.shares * omega)
 
     def commands(self, ticks: Whole, robots: Whole) -> Speeds:
