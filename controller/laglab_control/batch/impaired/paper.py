@@ -56,8 +56,9 @@ class Popf(Estimator):
 
     def _predict(self, tick: int, robots: Whole) -> None:
         prior = self._predicted(tick - 1, robots) if tick else self._prior
-        self._priors.keep_of(tick, robots, prior)
-        self._beliefs.keep_of(tick, robots, prior)
+        rows = np.array(prior)
+        self._priors.keep_of(tick, robots, rows)
+        self._beliefs.keep_of(tick, robots, rows)
         weights = self._robots.weights(covariance_of(prior))
         self._weights.keep(tick, robots, _whole(np.array(weights)))
         self._left.keep(tick, robots, IDENTITY)
@@ -67,9 +68,9 @@ class Popf(Estimator):
         before = Motion(*self._beliefs.of(j, robots))
         cosine, sine = headings(before.theta)
         u, F = self._record.inputs_of(j, robots), self._left.of(j, robots)
-        distance = (self._robots.model.sample_time * u.v)[:, None]
-        F[:, 0] -= distance * sine[:, None] * F[:, 2]  # A (31) times the product of I - K
-        F[:, 1] += distance * cosine[:, None] * F[:, 2]
+        distance = self._robots.model.sample_time * u.v
+        led = np.array((-distance * sine, distance * cosine)).T
+        F[:, :2] += led[:, :, None] * F[:, 2:]  # A (31) times the product of I - K
         self._factors.keep(j, robots, F)
         return predicted(self._robots.model, before, (cosine, sine), u)
 
