@@ -1,6 +1,8 @@
 """Many runs at once over links that lose, delay at random, reorder and fall silent are the runs one
 by one."""
 
+import csv
+
 import numpy as np
 import pytest
 
@@ -101,6 +103,14 @@ def test_the_verdicts_are_the_same(link, kind):
     assert verdicts == [True, False]
 
 
+def test_they_diverge_at_the_same_tick():
+    prior = {"estimator.initial_covariance": 0.05, "duration": 3.0}
+    scenarios = [load("fig8", {**LINKS["bursts"], **prior, "seed": seed}) for seed in (1, 2)]
+    many = run_many(scenarios)
+    assert many.diverged.all()
+    assert many.last_tick.tolist() == [len(laglab.run(each).trace["x"]) - 1 for each in scenarios]
+
+
 def test_a_guard_that_acts_makes_it_unsure():
     scenario = station("ekf", "losses and jitter", duration=2.0, **GUARDED)
     assert laglab.run(scenario).alarms
@@ -109,10 +119,10 @@ def test_a_guard_that_acts_makes_it_unsure():
 
 def test_what_was_recorded_of_a_link_happens_again(tmp_path):
     first = station("delayed-ekf", "losses and jitter", duration=2.0)
-    laglab.run(first, out=tmp_path / "run")
-    again = load(
-        "lab", {"link.replay": str(tmp_path / "run" / "link.csv"), "seed": 9, "duration": 2.0}
-    )
+    done, log = laglab.run(first), tmp_path / "link.csv"
+    with log.open("w", newline="") as file:
+        csv.writer(file).writerows([done.link.keys(), *zip(*done.link.values(), strict=True)])
+    again = load("lab", {"link.replay": str(log), "seed": 9, "duration": 2.0})
     assert furthest(run_many([again]), 0, laglab.run(again)) < SHARP
 
 
