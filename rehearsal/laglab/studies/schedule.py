@@ -53,7 +53,7 @@ def schedule_of(scenario: Scenario) -> Schedule:
     return _schedule(Scenario(**{name: getattr(scenario, name) for name in only_the_link}))
 
 
-@lru_cache(maxsize=512)
+@lru_cache(maxsize=256)
 def _schedule(scenario: Scenario) -> Schedule:
     robot, station, record = _Robot(scenario), _Station(scenario.link.command_delay), _Record()
     immediate = scenario.link.command_delay == 0

@@ -1,7 +1,6 @@
 """The estimators for many robots whose measurements come when they do.
 
-Each does what the one of its name does in `laglab_control.estimators`. All robots go through the
-same ticks: those that had nothing to put right come to the same numbers again.
+Each does what the one of its name does in `laglab_control.estimators`.
 """
 
 from collections.abc import Sequence
@@ -104,7 +103,12 @@ class Ekf(Estimator):
 
 
 class DelayedEkf(Estimator):
-    """`delayed-ekf`: the EKF at the newest measurement's tick, and what was sent since."""
+    """`delayed-ekf`: the EKF at the newest measurement's tick, and what was sent since.
+
+    All robots go through the same ticks, which costs no more than going through them with a few:
+    those that had nothing to put right come to the same numbers again, and what is beyond the
+    newest measurement of one will be gone through again when there is a newer one.
+    """
 
     def __init__(self, robots: Robots, record: Record, prior: Belief) -> None:
         timetable = record.timetable
@@ -117,17 +121,11 @@ class DelayedEkf(Estimator):
 
     def go_on(self, tick: int, since: Whole) -> Sequence[Weighed]:
         """From the oldest news to the newest measurement."""
-        first = since
-        news = self._record.timetable.arrivals[tick]
-        for arrivals in news:
-            robots, s, *_ = arrivals
+        first, news = np.minimum(since, self._newest + 1), self._record.timetable.arrivals[tick]
+        for robots, s, *_ in news:
             self._arrived[s, robots] = True
             first[robots] = np.minimum(first[robots], s)
-        behind = self._newest + 1
-        for arrivals in news:
-            robots, s, *_ = arrivals
             self._newest[robots] = np.maximum(self._newest[robots], s)
-        first = np.minimum(first, behind)
         begin = int(first.min(initial=tick + 1, where=first <= self._newest))
         compared = {
             again: self._go_through(again) for again in range(begin, int(self._newest.max()) + 1)
