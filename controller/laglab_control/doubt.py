@@ -7,13 +7,14 @@ by, and its claimed covariance is d d^T.
 """
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Generic, NamedTuple
 
 import numpy as np
 
 from laglab_control.angle import direction
 from laglab_control.flight import Flight, believed_at, believed_sum
 from laglab_control.model import Matrix, Vector
+from laglab_control.motion import F
 from laglab_control.robot import RobotModel
 
 STOPS_AFTER = 0.5
@@ -22,14 +23,14 @@ PATIENCE = 5
 """Ticks by which an echo may be late before its link counts as interrupted."""
 
 
-class Missed(NamedTuple):
+class Missed(NamedTuple, Generic[F]):
     """What the robot would have done more if it had done as believed."""
 
-    distance: float
+    distance: F
     """[m], forward."""
-    turn: float
+    turn: F
     """[rad]."""
-    length: float
+    length: F
     """[m] The way over which it would have."""
 
 
@@ -47,7 +48,7 @@ def doubt(flight: Flight, robot: RobotModel, x: Vector) -> Matrix | None:
     return total
 
 
-def _missed(flight: Flight, Ts: float) -> Iterator[Missed]:
+def _missed(flight: Flight, Ts: float) -> Iterator[Missed[float]]:
     told = flight.told
     if told.usual is None:
         return
@@ -61,14 +62,14 @@ def _missed(flight: Flight, Ts: float) -> Iterator[Missed]:
         yield _untold(flight, Ts)
 
 
-def _held(flight: Flight, Ts: float, believed: int) -> Missed:
+def _held(flight: Flight, Ts: float, believed: int) -> Missed[float]:
     """As if the last input known had been in force ever since."""
     v_sum, omega_sum = believed_sum(flight, flight.told.known + 1)
     v, omega = flight.told.in_force.tolist()
     return Missed(Ts * (v_sum - believed * v), Ts * (omega_sum - believed * omega), Ts * abs(v_sum))
 
 
-def _stopped(flight: Flight, Ts: float) -> Missed:
+def _stopped(flight: Flight, Ts: float) -> Missed[float]:
     """As if it had then stopped by itself."""
     since = flight.told.known + 1 + round(STOPS_AFTER / Ts)
     if since >= flight.tick:
@@ -77,7 +78,7 @@ def _stopped(flight: Flight, Ts: float) -> Missed:
     return Missed(Ts * v_sum, Ts * omega_sum, Ts * abs(v_sum))
 
 
-def _shifted(flight: Flight, Ts: float, believed: int, spread: float) -> Missed:
+def _shifted(flight: Flight, Ts: float, believed: int, spread: float) -> Missed[float]:
     """As if they had all come `spread` ticks later."""
     if believed <= 0:
         return Missed(0.0, 0.0, 0.0)
@@ -87,7 +88,7 @@ def _shifted(flight: Flight, Ts: float, believed: int, spread: float) -> Missed:
     return Missed(late * (v_now - v), late * (omega_now - omega), Ts * believed * abs(v_now))
 
 
-def _untold(flight: Flight, Ts: float) -> Missed:
+def _untold(flight: Flight, Ts: float) -> Missed[float]:
     """As if the last input known had been in force at all ticks of which nothing was told."""
     missing = flight.told.missing
     v, omega = flight.told.before.tolist()

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from operator import mul
 from typing import NamedTuple
 
 import numpy as np
@@ -56,6 +57,10 @@ class Told(NamedTuple):
     """So many inputs were only believed when the last echo came; None before one."""
     spread: float = 0.0
     """The standard deviation of the `recent` delays [ticks]."""
+
+    def usual_delay(self, otherwise: int) -> int:
+        """n, the median; before the first echo what was believed `otherwise`."""
+        return sorted(self.recent)[len(self.recent) // 2] if self.recent else otherwise
 
     @property
     def settled(self) -> int:
@@ -117,17 +122,23 @@ def hear(
     if not (echoes or recalled):
         return flight, []
     tick, sent, n, told, sums, in_flight, ahead = flight
-    inputs = [Applied(echo.tick, echo.u) for echo in echoes] + list(recalled)
-    for echo in echoes:
-        told = _heard(told, echo, tick)
-    if told.missing:
-        told = _found(told, inputs, tick)
-    seen = sorted(told.recent)[len(told.recent) // 2] if told.recent else n
+    told, inputs = learned(told, tick, echoes, recalled)
+    seen = told.usual_delay(otherwise=n)
     flight = Flight(tick, sent, seen, told, sums, in_flight, ahead)
     if seen == n:
         return flight, inputs
     flight = _rebuilt(robot, flight)
     return flight, inputs + _believed(flight, since=told.known + 1)
+
+
+def learned(
+    told: Told, tick: int, echoes: Sequence[Echo], recalled: Sequence[Applied]
+) -> tuple[Told, list[Applied]]:
+    """With what came at `tick`; and the inputs that are known by it."""
+    inputs = [Applied(echo.tick, echo.u) for echo in echoes] + list(recalled)
+    for echo in echoes:
+        told = _heard(told, echo, tick)
+    return _found(told, inputs, tick) if told.missing else told, inputs
 
 
 def _heard(told: Told, echo: Echo, tick: int) -> Told:
@@ -147,8 +158,8 @@ def _heard(told: Told, echo: Echo, tick: int) -> Told:
 
 
 def _deviation(delays: tuple[int, ...]) -> float:
-    mean = sum(delays) / len(delays)
-    return math.sqrt(sum((each - mean) ** 2 for each in delays) / len(delays))
+    count, total = len(delays), sum(delays)
+    return math.sqrt(count * sum(map(mul, delays, delays)) - total**2) / count
 
 
 def _found(told: Told, inputs: Sequence[Applied], tick: int) -> Told:

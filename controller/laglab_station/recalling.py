@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from laglab_control.flight import Told
-from laglab_protocol import Message, Recall
+from laglab_protocol import Recall
 
 PATIENCE = 5
 """Ticks that a measurement may be late behind later ones, before what it tells is asked for."""
@@ -45,7 +45,7 @@ class Questions:
     def __init__(self) -> None:
         self._asked = Asked()
 
-    def ask(self, told: Told, first: int, tick: int, robot: tuple[int, int]) -> list[Message]:
+    def ask(self, told: Told, first: int, tick: int, robot: tuple[int, int]) -> list[Recall]:
         """What to say at `tick`; the controller counts its ticks from `first` on."""
         if not told.missing:
             return []

@@ -1,6 +1,7 @@
 """Many robots at once, an array over them in place of each number.
 
-A second, faster way to the numbers of `Controller`, for links that deliver everything on time.
+A second, faster way to the numbers of `Controller`, for links that deliver everything on time; for
+others there is `laglab_control.batch.impaired`.
 """
 
 from laglab_control.batch.controller import BatchControl, BatchController

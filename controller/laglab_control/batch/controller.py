@@ -11,15 +11,15 @@ from laglab_control.batch import guard
 from laglab_control.batch.estimators import (
     BATCHED,
     BatchEstimator,
-    Correction,
-    Estimate,
     Setting,
+    TurnedEstimate,
 )
 from laglab_control.batch.guard import Found
 from laglab_control.batch.law import Demands, drive, slowed, stand_still
 from laglab_control.batch.matrices import Symmetric
+from laglab_control.batch.robots import Robots
 from laglab_control.batch.rows import Pose, Row, Speeds
-from laglab_control.batch.turning import Turned, TurnedWay, Turning, nowhere, step, way_of
+from laglab_control.batch.turning import Turned, TurnedWay, Turning, nowhere, turned, way_of
 from laglab_control.controller import FAR, StationConfig
 from laglab_control.errors import ConfigError
 from laglab_control.estimators.family import estimator_kind
@@ -78,14 +78,19 @@ class BatchController:
         return int(np.shape(self.initial_estimates)[1])
 
     @cached_property
+    def _robots(self) -> Robots:
+        return Robots(self.config.model)
+
+    @cached_property
     def _turning(self) -> Turning:
         return Turning(self.exact)
 
+    def _step(self, u: Speeds) -> Turned:
+        return turned(self._robots.motion(u))
+
     @cached_property
     def _estimator(self) -> BatchEstimator[Any]:
-        x, y, theta = np.diag(self.config.model.R).tolist()
-        correction = Correction((x, y, theta))
-        setting = Setting(self._turning, correction, self.measurement_delay)
+        setting = Setting(self._robots, self._turning, self.measurement_delay)
         return BATCHED[self.config.estimator](setting)
 
     @cached_property
@@ -101,14 +106,14 @@ class BatchController:
         flight: SlidingProduct[Turned, TurnedWay]
         flight = SlidingProduct(self._turning.joined, way_of(nowhere()))
         for _ in range(self.config.command_delay):
-            flight = _sent(flight, step(self.config.model, standing.speeds))
+            flight = _sent(flight, self._step(standing.speeds))
         found = guard.nothing_found(self.robots) if self.config.guard else None
         lost = np.zeros(self.robots, np.bool_)
         return BatchControl(self._estimator.start(prior), found, flight, standing, lost)
 
     def advance(self, control: BatchControl) -> BatchControl:
         """One tick later: the last commands are on their way, those n ticks older were applied."""
-        sent = step(self.config.model, control.drive.speeds)
+        sent = self._step(control.drive.speeds)
         applied, in_flight = _sent(control.in_flight, sent).pop()
         state = self._estimator.predict(control.estimator, applied)
         return control._replace(estimator=state, in_flight=in_flight)
@@ -127,19 +132,20 @@ class BatchController:
         if P is not None and found is not None:
             P = guard.claimed(P, found)
         lost = lost | self._diverged(pose)
-        demands = self._command(Estimate(estimate.pose, P), in_flight, last, lost)
+        demands = self._command(estimate._replace(P=P), in_flight, last, lost)
         return BatchControl(state, found, in_flight, demands, lost, pose, P)
 
     def _command(
         self,
-        estimate: Estimate,
+        estimate: TurnedEstimate,
         in_flight: SlidingProduct[Turned, TurnedWay],
         last: Demands,
         lost: NDArray[np.bool_],
     ) -> Demands:
         (pose, P), law = estimate, self.config.law
         there = self._turning.joined(pose, in_flight.product) if self._predicts else pose
-        speeds, at_goal = drive(law, there, last.at_goal, self.exact)
+        heading = None if self.exact else there.heading
+        speeds, at_goal = drive(law, there.way, last.at_goal, heading)
         if P is not None:
             speeds = slowed(law, speeds, P)
         if lost.any():

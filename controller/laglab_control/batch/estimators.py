@@ -10,6 +10,7 @@ from typing import Any, NamedTuple, Protocol, TypeVar
 
 from laglab_control.batch import matrices
 from laglab_control.batch.matrices import IDENTITY, Square, Symmetric, covariance_of
+from laglab_control.batch.robots import Compared, Robots
 from laglab_control.batch.rows import Belief, Pose, Row, difference, headings, pose_of
 from laglab_control.batch.turning import Turned, TurnedWay, Turning, nowhere, turned, way_of
 from laglab_control.motion import Motion
@@ -17,41 +18,7 @@ from laglab_control.past.log import Log, append, logged
 from laglab_control.past.sliding import SlidingProduct
 
 
-class Compared(NamedTuple):
-    """z_s - x^-_s, and the inverse of its claimed covariance S."""
-
-    innovation: Pose
-    weights: Symmetric
-
-
-@dataclass(frozen=True)
-class Correction:
-    """(8) with a sensor of the pose, whose errors are independent: R is diagonal."""
-
-    variances: tuple[float, float, float]
-    """The diagonal of R."""
-
-    def weights(self, P: Symmetric) -> Symmetric:
-        """S^-1 = (P + R)^-1."""
-        x, y, theta = self.variances
-        xx, xy, xt, yy, yt, tt = P
-        return matrices.inverse(Symmetric(xx + x, xy, xt, yy + y, yt, tt + theta))
-
-    def of(self, prior: Belief, z: Pose) -> tuple[Belief, Compared]:
-        """K = P S^-1, and P+ = P - P S^-1 P = R - R S^-1 R."""
-        P = covariance_of(prior)
-        v, W = difference(z, pose_of(prior)), self.weights(P)
-        d = matrices.times_vector(matrices.whole(P), matrices.times_vector(matrices.whole(W), v))
-        x, y, t = self.variances
-        posterior = Motion(
-            *(prior.x + d.x, prior.y + d.y, prior.theta + d.theta),
-            *(x - x * x * W.xx, -x * y * W.xy, -x * t * W.xt),
-            *(y - y * y * W.yy, -y * t * W.yt, t - t * t * W.tt),
-        )
-        return posterior, Compared(v, W)
-
-
-class Estimate(NamedTuple):
+class TurnedEstimate(NamedTuple):
     """Of the present."""
 
     pose: TurnedWay
@@ -59,16 +26,16 @@ class Estimate(NamedTuple):
     """What is claimed for its error; None: nothing."""
 
 
-def estimate_of(belief: Turned) -> Estimate:
+def turned_estimate_of(belief: Turned) -> TurnedEstimate:
     """In two parts."""
-    return Estimate(way_of(belief), covariance_of(belief.motion))
+    return TurnedEstimate(way_of(belief), covariance_of(belief.motion))
 
 
 class Setting(NamedTuple):
     """What an estimator is told."""
 
+    robots: Robots
     turning: Turning
-    correction: Correction
     measurement_delay: int
 
 
@@ -90,7 +57,7 @@ class BatchEstimator(Protocol[S]):
         """With z_{k-m}, and what it was compared with."""
         ...
 
-    def estimate(self, state: S) -> Estimate | None:
+    def estimate(self, state: S) -> TurnedEstimate | None:
         """None: there is none."""
         ...
 
@@ -122,12 +89,12 @@ class DelayedEkf(BatchEstimator[Delayed]):
         if measured:
             step, window = window.pop()
             there = self.setting.turning.composed(there, step)
-        belief, compared = self.setting.correction.of(there.motion, z)
+        belief, compared = self.setting.robots.correct(there.motion, z)
         return Delayed(turned(belief), window, measured=True), compared
 
-    def estimate(self, state: Delayed) -> Estimate:
+    def estimate(self, state: Delayed) -> TurnedEstimate:
         there, window, _ = state
-        return estimate_of(self.setting.turning.composed(there, window.product))
+        return turned_estimate_of(self.setting.turning.composed(there, window.product))
 
 
 class Paper(NamedTuple):
@@ -165,10 +132,10 @@ class Popf(BatchEstimator[Paper]):
 
     def correct(self, state: Paper, z: Pose) -> tuple[Paper, Compared]:
         (belief, _), _, priors, window, length = state
-        m, correction = self.setting.measurement_delay, self.setting.correction
+        m, robots = self.setting.measurement_delay, self.setting.robots
         prior = priors.items[priors.length - 1 - m]
         P_s = covariance_of(prior)
-        v, W = difference(z, pose_of(prior)), correction.weights(P_s)
+        v, W = difference(z, pose_of(prior)), robots.weights(P_s)
         cross = matrices.whole(P_s)
         if m:
             cross = matrices.product(window.product, cross)
@@ -180,8 +147,8 @@ class Popf(BatchEstimator[Paper]):
         left = matrices.less_identity(K)
         return Paper(turned(belief), left, priors, window, length), Compared(v, W)
 
-    def estimate(self, state: Paper) -> Estimate:
-        return estimate_of(state.belief)
+    def estimate(self, state: Paper) -> TurnedEstimate:
+        return turned_estimate_of(state.belief)
 
 
 def _later_to_the_left(older: Square, newer: Square) -> Square:
@@ -211,11 +178,11 @@ class Ekf(BatchEstimator[Turned]):
         return self.setting.turning.composed(state, step)
 
     def correct(self, state: Turned, z: Pose) -> tuple[Turned, Compared]:
-        belief, compared = self.setting.correction.of(state.motion, z)
+        belief, compared = self.setting.robots.correct(state.motion, z)
         return turned(belief), compared
 
-    def estimate(self, state: Turned) -> Estimate:
-        return estimate_of(state)
+    def estimate(self, state: Turned) -> TurnedEstimate:
+        return turned_estimate_of(state)
 
 
 @dataclass(frozen=True, eq=False)
@@ -233,8 +200,10 @@ class Raw(BatchEstimator[Pose | None]):
     def correct(self, state: Pose | None, z: Pose) -> tuple[Pose, None]:
         return z, None
 
-    def estimate(self, state: Pose | None) -> Estimate | None:
-        return None if state is None else Estimate(TurnedWay(state, headings(state.theta)), None)
+    def estimate(self, state: Pose | None) -> TurnedEstimate | None:
+        return (
+            None if state is None else TurnedEstimate(TurnedWay(state, headings(state.theta)), None)
+        )
 
 
 BATCHED: Mapping[str, Callable[[Setting], BatchEstimator[Any]]] = {

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab_control.batch.estimators import Compared
 from laglab_control.batch.matrices import Symmetric, weighted
+from laglab_control.batch.robots import Compared
 from laglab_control.batch.rows import Pose, Row
 from laglab_control.chi_square import chi_square_bound
 from laglab_control.guard.evidence import (

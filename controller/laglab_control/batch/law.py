@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab_control.batch.matrices import Symmetric
-from laglab_control.batch.rows import Heading, Row, Speeds, headings, wrapped
-from laglab_control.batch.turning import TurnedWay
+from laglab_control.batch.rows import Heading, Pose, Row, Speeds, headings, wrapped
 from laglab_control.laws.aicardi import Law
 
 # numpy's own differ from those of `Law` in the last bit. Where there is no noise a robot comes so
@@ -33,14 +32,16 @@ def stand_still(robots: int) -> Demands:
     return Demands(Speeds(np.zeros(robots), np.zeros(robots)), np.zeros(robots, np.bool_))
 
 
-def drive(law: Law, there: TurnedWay, at_goal: NDArray[np.bool_], exact: bool = True) -> Demands:
-    """`Law.drive`; `exact`: to the last bit."""
-    x, y, theta = there.way
+def drive(
+    law: Law, pose: Pose, at_goal: NDArray[np.bool_], heading: Heading | None = None
+) -> Demands:
+    """`Law.drive`, to the last bit; given the poses' headings it is faster, to the last but one."""
+    x, y, theta = pose
     x_goal, y_goal, theta_goal = law.goal
     offset = x_goal - x, y_goal - y
-    rho, psi = _polar_coordinates(*offset) if exact else (_length(*offset), _direction(*offset))
+    rho, psi = _polar_coordinates(*offset) if heading is None else _nearly_polar(*offset)
     alpha, phi = wrapped(psi - theta), wrapped(psi - theta_goal)
-    ahead = headings(alpha) if exact else _seen(offset, rho, there.heading)
+    ahead = headings(alpha) if heading is None else _seen(offset, rho, heading)
     speeds = _polar(law, rho, alpha, ahead, phi)
     if law.goal_tolerance is None:
         at_goal = np.zeros(len(rho), np.bool_)
@@ -64,12 +65,8 @@ def slowed(law: Law, speeds: Speeds, P: Symmetric) -> Speeds:
     return Speeds(share * speeds.v, share * speeds.omega)
 
 
-def _length(dx: Row, dy: Row) -> Row:
-    return np.sqrt(dx * dx + dy * dy)
-
-
-def _direction(dx: Row, dy: Row) -> Row:
-    return np.arctan2(dy, dx)
+def _nearly_polar(dx: Row, dy: Row) -> tuple[Row, Row]:
+    return np.sqrt(dx * dx + dy * dy), np.arctan2(dy, dx)
 
 
 def _seen(offset: tuple[Row, Row], rho: Row, heading: Heading) -> Heading:

@@ -10,9 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from laglab_control.batch.rows import Belief, Heading, Pose, Row, Speeds, headings
+from laglab_control.batch.rows import Belief, Heading, Pose, Row, headings
 from laglab_control.motion import Motion, Way, composed_along, joined_along
-from laglab_control.robot import RobotModel
 
 
 class Turned(NamedTuple):
@@ -67,9 +66,3 @@ def way_of(turned: Turned) -> TurnedWay:
 def nowhere() -> Turned:
     """No motion at all, for any number of robots."""
     return turned(Motion(*[np.zeros(1)] * 9))
-
-
-def step(model: RobotModel, u: Speeds) -> Turned:
-    """One tick of (3): `RobotModel.motion`."""
-    Ts, noise = model.sample_time, [np.array([each]) for each in model.noise]
-    return turned(Motion(Ts * u.v, np.zeros(1), Ts * u.omega, *noise))

@@ -2,6 +2,7 @@
 
 import heapq
 import math
+from collections.abc import Callable
 from typing import Generic, NamedTuple, TypeVar
 
 from laglab_gateway.link.fates import FateKind, Fates
@@ -26,11 +27,17 @@ class Channel(Generic[M]):
     """Holds each message back for exactly `delay` ticks; an impaired one for longer, or for ever.
 
     Everything happens on the grid of ticks: what would come out between two of them comes out at
-    the later one. `fates` None is the ideal link.
+    the later one. `fates` None is the ideal link. `frame` makes the bytes that an impaired link may
+    queue and corrupt; by default they are a frame of the message.
     """
 
     def __init__(
-        self, direction: Direction, delay: int, sample_time: float, fates: Fates | None = None
+        self,
+        direction: Direction,
+        delay: int,
+        sample_time: float,
+        fates: Fates | None = None,
+        frame: Callable[[M], bytes] | None = None,
     ) -> None:
         if delay < 0:
             raise ValueError(f"a delay is a number of ticks, 0 or more, not {delay}")
@@ -39,7 +46,7 @@ class Channel(Generic[M]):
         self._delay = delay
         self._sample_time = sample_time
         self._fates = fates
-        self._sender = Sender(0, 0)
+        self._bytes_of = frame or Sender(0, 0).frame
         self._entered = 0
         self._frame = (-1, 0)
         self._waiting: list[tuple[int, int, Crossing[M]]] = []
@@ -74,7 +81,7 @@ class Channel(Generic[M]):
 
     def _impair(self, tick: int, message: M, fates: Fates) -> None:
         number = self._number(tick)
-        raw = self._sender.frame(message)
+        raw = self._bytes_of(message)
         for copy, fate in enumerate(fates.of(tick, tick * self._sample_time, raw)):
             row = LinkRow(self._direction, tick, number, copy, len(raw), fate.kind, fate.extra)
             self._log.append(row)

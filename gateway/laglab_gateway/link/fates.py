@@ -65,8 +65,9 @@ class RandomFates:
         return probability > 0 and self._rng.random() < probability
 
     def _loss(self, link: Impairments, time: float) -> FateKind | None:
-        if any(within(time, start, duration) for start, duration in link.outages):
-            return FateKind.OUTAGE
+        for start, duration in link.outages:
+            if within(time, start, duration):
+                return FateKind.OUTAGE
         if self._happens(link.loss):
             return FateKind.LOST
         return FateKind.BURST if link.burst and self._burst_loss(link.burst) else None

@@ -92,5 +92,10 @@ class Impairments:
         described("s", "When nothing passes: a list of [start, duration]."),
     ] = ()
 
+    @property
+    def reads_bytes(self) -> bool:
+        """Whether what becomes of a frame depends on its length or contents."""
+        return self.bandwidth is not None or self.bit_error_rate > 0
+
 
 IDEAL = Impairments()

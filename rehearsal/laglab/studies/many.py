@@ -1,6 +1,7 @@
 """Runs that differ only in seed and start, all at once: the fleet FMU, and a batch of controllers.
 
-The order of a tick is that of docs/tick.md, the numbers are those of the runs one by one.
+The order of a tick is that of docs/tick.md, the numbers are those of the runs one by one. Where the
+link does more than delay, what happens when is found out first, seed by seed (`schedule`).
 """
 
 from collections import deque
@@ -10,13 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.runs.robot_side import robot_parameters
+from laglab.runs.robot_side import link_fates, robot_parameters
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario
+from laglab.studies.schedule import schedule_of
 from laglab_control.batch import BATCHED, BatchController, Pose, Speeds
+from laglab_control.batch.impaired import ImpairedController, Timetable
 from laglab_fmu import Fleet
-from laglab_gateway import IDEAL, Safety
-from laglab_gateway.drive import FASTEST
+from laglab_gateway.drive import FASTEST, Safety
 
 Array = NDArray[np.float64]
 
@@ -41,31 +43,43 @@ class Many:
     """(robots,): something happened that a batch cannot express; run them one by one."""
 
 
-def why_one_by_one(scenario: Scenario) -> str | None:
-    """What a batch cannot express of such runs; None: nothing."""
-    kind, link = scenario.estimator.kind, scenario.link
-    if kind not in BATCHED:
-        return f"{kind} has no form for many robots"
-    if scenario.plant.event:
-        return "the fleet's robots cannot be moved by hand"
-    if link.replay or link.event or link.command != IDEAL or link.measurement != IDEAL:
-        return "the link does not deliver everything on time"
-    return None if scenario.safety.link_timeout else "the robot stops at once"
-
-
 def run_many(scenarios: Sequence[Scenario]) -> Many:
-    """All of them to the end."""
-    scenario, robots = scenarios[0], len(scenarios)
-    last, link = scenario.must_end(), scenario.link
-    starts = np.array([each.first_estimate() for each in scenarios]).T
-    controller = BatchController(
-        station_config(scenario), starts, link.measurement_delay, exact=not scenario.noise
-    )
-    many = _unwritten(last, robots)
+    """All of them to the end. There must be no reason to run them one by one (`why_one_by_one`)."""
+    scenario = scenarios[0]
+    many = _unwritten(scenario.must_end(), len(scenarios))
     parameters = [robot_parameters(each) for each in scenarios]
     with Fleet.open(parameters) as fleet, np.errstate(all="ignore"):  # what diverges overflows
-        _run(fleet, controller, scenario, many)
+        if is_ideal(scenario):
+            _run(fleet, scenarios, many)
+        else:
+            _run_impaired(fleet, scenarios, many)
     return many
+
+
+def why_one_by_one(scenario: Scenario) -> str | None:
+    """Why a run of that scenario cannot be one of many; None when it can."""
+    link = scenario.link
+    reasons = {
+        f"there is no {scenario.estimator.kind} for many robots": (
+            scenario.estimator.kind not in BATCHED
+        ),
+        "somebody moves the robot (plant.event)": bool(scenario.plant.event),
+        "the run does not end by itself (duration)": scenario.last_tick is None,
+        "the clock paces it (pace)": scenario.pace != "lockstep",
+        "what the link does depends on the bytes (bit_error_rate, bandwidth)": (
+            link.replay is None
+            and any(
+                each.reads_bytes
+                for each in (link.command, link.measurement, *[event.link for event in link.event])
+            )
+        ),
+    }
+    return next((reason for reason, holds in reasons.items() if holds), None)
+
+
+def is_ideal(scenario: Scenario) -> bool:
+    """Whether the link delivers everything on time, and the robot never has to stop by itself."""
+    return not link_fates(scenario) and scenario.safety.link_timeout > 0
 
 
 def _unwritten(last: int, robots: int) -> Many:
@@ -80,10 +94,18 @@ def _unwritten(last: int, robots: int) -> Many:
     )
 
 
-def _run(fleet: Fleet, controller: BatchController, scenario: Scenario, many: Many) -> None:
-    control = controller.start()
-    last = len(many.truth) - 1
+def _starts(scenarios: Sequence[Scenario]) -> Array:
+    """The first estimates (3, robots)."""
+    return np.array([each.first_estimate() for each in scenarios]).T
+
+
+def _run(fleet: Fleet, scenarios: Sequence[Scenario], many: Many) -> None:
+    scenario, last = scenarios[0], len(many.truth) - 1
     n, m = scenario.link.command_delay, scenario.link.measurement_delay
+    controller = BatchController(
+        station_config(scenario), _starts(scenarios), m, exact=not scenario.noise
+    )
+    control = controller.start()
     measurements = deque[Pose]()
     commands = deque([control.drive.speeds] * n)
     wheels = Wheels(scenario)
@@ -105,6 +127,27 @@ def _run(fleet: Fleet, controller: BatchController, scenario: Scenario, many: Ma
             fleet.step(wheels.turning(applied))
     if control.found is not None:
         many.unsure[:] |= control.found.acts
+
+
+def _run_impaired(fleet: Fleet, scenarios: Sequence[Scenario], many: Many) -> None:
+    scenario, last = scenarios[0], len(many.truth) - 1
+    schedules = [schedule_of(each) for each in scenarios]
+    timetable = Timetable([each.course for each in schedules])
+    controller = ImpairedController(station_config(scenario), _starts(scenarios), timetable)
+    many.unsure[:] = [each.beyond for each in schedules]
+    wheels = Wheels(scenario)
+    for k in range(last + 1):
+        many.truth[k] = fleet.readings[:, :3].T
+        pose, P, sent, lost = controller.answer(Pose(*fleet.readings[:, 3:6].T))
+        if P is not None:  # as the station reports it
+            many.estimates[k], many.P[k] = pose, P
+        many.applied[k] = applied = controller.applied()
+        many.unsure[:] |= ~many.diverged & (controller.acts | refused(sent, scenario.safety))
+        ends = lost & ~many.diverged
+        many.last_tick[ends] = k
+        many.diverged[:] |= ends
+        if k < last:
+            fleet.step(wheels.turning(applied))
 
 
 def refused(speeds: Speeds, safety: Safety) -> NDArray[np.bool_]:

@@ -1,0 +1,130 @@
+"""Estimate, extrapolate, command, for many robots on impaired links."""
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from laglab_control.batch.impaired.doubt import Doubts
+from laglab_control.batch.impaired.estimators import DelayedEkf, Ekf, Estimator, Raw
+from laglab_control.batch.impaired.guard import Watch
+from laglab_control.batch.impaired.paper import Popf
+from laglab_control.batch.impaired.record import Record
+from laglab_control.batch.impaired.sent import Sent
+from laglab_control.batch.impaired.timetable import Timetable, Tokens
+from laglab_control.batch.law import drive, slowed, stand_still
+from laglab_control.batch.matrices import Symmetric
+from laglab_control.batch.robots import Estimate, Robots
+from laglab_control.batch.rows import Belief, Pose, Row, Speeds, headings
+from laglab_control.controller import FAR, StationConfig
+from laglab_control.errors import ConfigError
+from laglab_control.estimators.family import estimator_kind
+from laglab_control.model import Matrix
+from laglab_control.motion import Motion, joined_along
+
+IMPAIRED: Mapping[str, Callable[[Robots, Record, Belief], Estimator]] = {
+    "raw": Raw,
+    "ekf": Ekf,
+    "popf": Popf,
+    "popf-printed": partial(Popf, innovation_at_k=True),
+    "delayed-ekf": DelayedEkf,
+}
+"""By name: those that there are for many robots on impaired links."""
+
+
+class Answers(NamedTuple):
+    """Of all robots at a tick."""
+
+    pose: Pose
+    """The estimates after the tick's correction; NaN where there is none."""
+    P: Symmetric | None
+    """What is claimed for their errors; None: nothing."""
+    speeds: Speeds
+    """The commands."""
+    lost: NDArray[np.bool_]
+    """The robots whose estimate has diverged."""
+
+
+class ImpairedController:
+    """As many controllers as there are initial estimates (3, robots) [m, m, rad], all else alike.
+
+    `timetable` says what reaches whom when. `answer` once a tick, from tick 0 on.
+    Raises ConfigError when there is no such estimator for many robots.
+    """
+
+    def __init__(
+        self, config: StationConfig, initial_estimates: Matrix, timetable: Timetable
+    ) -> None:
+        if config.estimator not in IMPAIRED:
+            raise ConfigError(
+                f"there is no {config.estimator} for many robots, but {', '.join(IMPAIRED)}"
+            )
+        robots, count = Robots(config.model), timetable.robots
+        self._config, self._timetable = config, timetable
+        self._began = np.array(initial_estimates)
+        self._predicts = estimator_kind(config.estimator).predicts
+        self._sent = Sent(robots, count, timetable.ticks, timetable.reach)
+        self._record = Record(timetable, self._sent)
+        P = np.asarray(config.initial_covariance)[np.triu_indices(3)]
+        prior = Motion(*self._began, *[np.full(count, each) for each in P])
+        self._estimator = IMPAIRED[config.estimator](robots, self._record, prior)
+        self._watch = Watch(count) if config.guard else None
+        self._doubts = Doubts(timetable, self._sent, config.model.sample_time)
+        self._lost = np.zeros(count, np.bool_)
+        self._last = stand_still(count)
+        self._tick = -1
+
+    @property
+    def acts(self) -> NDArray[np.bool_]:
+        """The robots whose guard would have acted by now."""
+        return np.zeros_like(self._lost) if self._watch is None else self._watch.acts
+
+    def answer(self, z: Pose) -> Answers:
+        """The next tick, at which z is sampled; it arrives when it does."""
+        self._tick = tick = self._tick + 1
+        self._record.sample(tick, z)
+        if tick:
+            self._record.believe(tick)
+        weighed = self._estimator.go_on(tick, self._record.put_right(tick))
+        if self._watch is not None:
+            self._watch.look(weighed)
+        pose, P = self._estimator.estimate(tick)
+        if P is not None:
+            P = P if self._watch is None else self._watch.claimed(P)
+            P = self._doubts.added(P, pose, tick)
+        there = ~np.isnan(pose.theta) if P is None else np.True_
+        self._lost = self._lost | there & self._diverged(pose)
+        self._command(Estimate(pose, P), there & ~self._lost)
+        self._sent.push(tick, self._last.speeds)
+        return Answers(pose, P, self._last.speeds, self._lost)
+
+    def applied(self) -> Speeds:
+        """What is in force from this tick to the next."""
+        commands, shares = self._timetable.applied
+        return self._sent.inputs(Tokens(commands[self._tick], shares[self._tick]))
+
+    def _command(self, estimate: Estimate, driven: NDArray[np.bool_]) -> None:
+        (pose, P), law, tick = estimate, self._config.law, self._tick
+        if self._predicts:
+            ahead = self._sent.way(tick - self._timetable.delay[tick], np.full(len(driven), tick))
+            pose = joined_along(headings(pose.theta), pose, ahead)
+        speeds, at_goal = drive(law, pose, self._last.at_goal)
+        if P is not None:
+            speeds = slowed(law, speeds, P)
+        if not driven.all():
+            speeds = Speeds(*[np.where(driven, each, 0.0) for each in speeds])
+            at_goal = at_goal & driven
+        self._last = self._last._replace(speeds=speeds, at_goal=at_goal)
+
+    def _diverged(self, pose: Pose) -> NDArray[np.bool_]:
+        """Not finite, or FAR from where it began and from the goal."""
+        x_goal, y_goal, _ = self._config.law.goal
+        x_began, y_began, _ = self._began
+        near = _within(pose, x_goal, y_goal) | _within(pose, x_began, y_began)
+        return ~(near & np.isfinite(pose.theta))
+
+
+def _within(pose: Pose, x: Row | float, y: Row | float) -> NDArray[np.bool_]:
+    return np.hypot(pose.x - x, pose.y - y) <= FAR

@@ -1,0 +1,78 @@
+"""What the model says of many robots that are alike, and what is known of them."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from laglab_control.batch import matrices
+from laglab_control.batch.matrices import Symmetric, covariance_of
+from laglab_control.batch.rows import Belief, Pose, Row, Speeds, difference, headings, pose_of
+from laglab_control.motion import Motion, composed_along
+from laglab_control.robot import RobotModel
+
+
+class Compared(NamedTuple):
+    """z_s - x^-_s, and the inverse of its claimed covariance S."""
+
+    innovation: Pose
+    weights: Symmetric
+
+
+class Estimate(NamedTuple):
+    """Of the present."""
+
+    pose: Pose
+    P: Symmetric | None
+    """What is claimed for its error; None: nothing."""
+
+
+def estimate_of(belief: Belief) -> Estimate:
+    """In two parts."""
+    return Estimate(pose_of(belief), covariance_of(belief))
+
+
+def composed(first: Belief, second: Belief) -> Belief:
+    """Two windows in a row; of a belief and a window (27), over one tick or over many."""
+    return composed_along(headings(first.theta), first, second)
+
+
+@dataclass(frozen=True, eq=False)
+class Robots:
+    """Their sensor's errors in x, y and theta are independent: R is diagonal."""
+
+    model: RobotModel
+
+    @cached_property
+    def _noise(self) -> list[Row]:
+        return [np.array([each]) for each in self.model.noise]
+
+    @cached_property
+    def _variances(self) -> tuple[float, float, float]:
+        x, y, theta = np.diag(self.model.R).tolist()
+        return x, y, theta
+
+    def motion(self, u: Speeds) -> Belief:
+        """One tick of (3): `RobotModel.motion`."""
+        Ts = self.model.sample_time
+        return Motion(Ts * u.v, np.zeros(1), Ts * u.omega, *self._noise)
+
+    def weights(self, P: Symmetric) -> Symmetric:
+        """S^-1 = (P + R)^-1."""
+        x, y, theta = self._variances
+        xx, xy, xt, yy, yt, tt = P
+        return matrices.inverse(Symmetric(xx + x, xy, xt, yy + y, yt, tt + theta))
+
+    def correct(self, prior: Belief, z: Pose) -> tuple[Belief, Compared]:
+        """(8): K = P S^-1, and P+ = P - P S^-1 P = R - R S^-1 R."""
+        P = covariance_of(prior)
+        v, W = difference(z, pose_of(prior)), self.weights(P)
+        d = matrices.times_vector(matrices.whole(P), matrices.times_vector(matrices.whole(W), v))
+        x, y, t = self._variances
+        posterior = Motion(
+            *(prior.x + d.x, prior.y + d.y, prior.theta + d.theta),
+            *(x - x * x * W.xx, -x * y * W.xy, -x * t * W.xt),
+            *(y - y * y * W.yy, -y * t * W.yt, t - t * t * W.tt),
+        )
+        return posterior, Compared(v, W)
