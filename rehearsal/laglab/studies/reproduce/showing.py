@@ -11,8 +11,8 @@ import numpy as np
 from laglab.scenario import Overrides, load
 from laglab.studies.maps import StudyRuns, runs_of
 from laglab.studies.sweep.judged import joined
-from laglab.studies.sweep.one_by_one import one_by_one
 from laglab.studies.sweep.study import Study
+from laglab.studies.sweep.ways import judged
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -52,7 +52,7 @@ def on_grid(
     base = load(scenario, overrides)
     study = Study(base, range(1, seeds + 1), {k: tuple(v) for k, v in grid.items()}, radius, name)
     cells = list(study.cells(name))
-    columns = joined([one_by_one(cell) for cell in cells])._asdict()
+    columns = joined([judged(cell) for cell in cells])._asdict()
     for key in grid:
         columns[key] = np.repeat([cell.grid[key] for cell in cells], seeds)
     columns["seed"] = np.tile(study.seeds, len(cells))

@@ -8,11 +8,9 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from laglab.scenario.explain import spelled
-from laglab.studies.sweep.all_at_once import all_at_once
 from laglab.studies.sweep.cell import Cell
 from laglab.studies.sweep.judged import Judgements
-from laglab.studies.sweep.one_by_one import one_by_one
-from laglab.studies.sweep.ways import how
+from laglab.studies.sweep.ways import judged
 
 DESCRIPTION = b"laglab.cell"
 """Where the table's metadata tell, as JSON, what the cell is."""
@@ -20,10 +18,10 @@ DESCRIPTION = b"laglab.cell"
 
 def computed(cell: Cell) -> pa.Table:
     """A row for each of the cell's seeds, in their order. Raises RunError."""
-    return table(cell, all_at_once(cell) if how(cell).batch else one_by_one(cell))
+    return table(cell, judged(cell))
 
 
-def table(cell: Cell, judged: Judgements) -> pa.Table:
+def table(cell: Cell, became: Judgements) -> pa.Table:
     """The grid's values, the seeds and their starts, and what became of them; null for nothing."""
     rows = len(cell.seeds)
     x, y, theta = cell.starts().T
@@ -33,7 +31,7 @@ def table(cell: Cell, judged: Judgements) -> pa.Table:
         "start_x": pa.array(x),
         "start_y": pa.array(y),
         "start_theta": pa.array(theta),
-        **{name: _column(name, values) for name, values in judged._asdict().items()},
+        **{name: _column(name, values) for name, values in became._asdict().items()},
     }
     told = {"grid": cell.grid, "radius": cell.radius, "origin": cell.origin}
     return pa.table(columns).replace_schema_metadata({DESCRIPTION: msgspec.json.encode(told)})

@@ -3,7 +3,10 @@
 from typing import NamedTuple
 
 from laglab.studies.many import why_one_by_one
+from laglab.studies.sweep.all_at_once import all_at_once
 from laglab.studies.sweep.cell import Cell
+from laglab.studies.sweep.judged import Judgements
+from laglab.studies.sweep.one_by_one import one_by_one
 
 TICK_ALONE = 160e-6
 """[s] A tick of a run by itself takes about so long, with both sides and the bytes between them."""
@@ -27,6 +30,11 @@ def how(cell: Cell) -> How:
     """Known from the cell's description alone, without running anything."""
     because = why_one_by_one(cell.scenario)
     return How(because is None, because or "")
+
+
+def judged(cell: Cell) -> Judgements:
+    """What became of the cell's runs, made in whichever way. Raises RunError."""
+    return all_at_once(cell) if how(cell).batch else one_by_one(cell)
 
 
 def seconds(cell: Cell) -> float:
