@@ -1,6 +1,7 @@
 """A study's cells, and what is judged of their runs."""
 
 import math
+from pathlib import Path
 
 import msgspec
 import numpy as np
@@ -12,6 +13,7 @@ from laglab.studies.sweep.cell import Cell
 from laglab.studies.sweep.compute import computed
 from laglab.studies.sweep.judged import Record, judgements
 from laglab.studies.sweep.loading import load_study
+from laglab.studies.sweep.ways import how
 
 HERE = (0.0, 0.0, 0.0)
 SHORT = """
@@ -20,6 +22,14 @@ seeds = [3, 5]
 grid = { "estimator.kind" = ["delayed-ekf", "raw"], "estimator.initial_covariance" = [0.3] }
 [start]
 radius = 5.0
+"""
+
+LOSSY = """
+scenario = { noise = true, duration = 1.5, law = { v_max = 1.0 } }
+seeds = 3
+[grid]
+"link.command.loss" = [0.1, 0.4]
+"estimator.kind" = ["popf", "delayed-ekf"]
 """
 
 
@@ -33,7 +43,7 @@ def cells(tmp_path_factory: pytest.TempPathFactory) -> list[Cell]:
 
 def test_a_row_is_what_the_run_says_of_itself(cells: list[Cell]) -> None:
     for cell in cells:
-        for row, seed in zip(computed(cell).to_pylist(), (3, 5), strict=True):
+        for row, seed in zip(computed([cell])[0].to_pylist(), (3, 5), strict=True):
             start = [row[f"start_{axis}"] for axis in ("x", "y", "theta")]
             told = {"duration": 8.0, "estimator.guard": False, "seed": seed, "start": start}
             run = laglab.run("lab", {**told, **cell.grid})
@@ -51,6 +61,17 @@ def test_a_row_is_what_the_run_says_of_itself(cells: list[Cell]) -> None:
                 assert row["rms_x"] == pytest.approx(summary.rms_error.x, rel=1e-9)
                 assert row["rms_theta"] == pytest.approx(summary.rms_error.theta, rel=1e-9)
                 assert row["nees"] > 0
+
+
+def test_cells_on_impaired_links_are_the_same_in_whatever_company(tmp_path: Path) -> None:
+    path = tmp_path / "lossy.toml"
+    path.write_text(LOSSY)
+    cells = list(load_study(str(path)).cells())
+    assert all(how(cell).batch for cell in cells)
+    together = computed(cells)
+    for cell, table in zip(cells, together, strict=True):
+        assert table.equals(computed([cell])[0])
+    assert not together[0].equals(together[2])
 
 
 def test_every_seed_starts_somewhere_of_its_own_within_the_radius(cells: list[Cell]) -> None:

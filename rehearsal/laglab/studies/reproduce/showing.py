@@ -52,7 +52,7 @@ def on_grid(
     base = load(scenario, overrides)
     study = Study(base, range(1, seeds + 1), {k: tuple(v) for k, v in grid.items()}, radius, name)
     cells = list(study.cells(name))
-    columns = joined([judged(cell) for cell in cells])._asdict()
+    columns = joined(judged(cells))._asdict()
     for key in grid:
         columns[key] = np.repeat([cell.grid[key] for cell in cells], seeds)
     columns["seed"] = np.tile(study.seeds, len(cells))

@@ -1,8 +1,13 @@
-"""A cell's runs, all at once: the fleet FMU and a batch of controllers."""
+"""The runs of some cells, all at once: the fleet FMU and a batch of controllers."""
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from laglab.studies.many import Many, run_many
+from laglab.scenario import Scenario
+from laglab.scenario.tables.link import LinkTable
+from laglab.studies.many import Many, is_ideal, run_many
 from laglab.studies.sweep.cell import Cell
 from laglab.studies.sweep.judged import Judgements, Record, judgements
 from laglab.studies.sweep.one_by_one import judged_alone
@@ -11,12 +16,33 @@ SQUARE = [[0, 1, 2], [1, 3, 4], [2, 4, 5]]
 """Where in an upper triangle the elements of a whole matrix are."""
 
 
-def all_at_once(cell: Cell) -> Judgements:
-    """What became of every seed; where the batch cannot tell, as that run alone has it.
+def all_at_once(cells: Sequence[Cell]) -> list[Judgements]:
+    """What became of every cell's seeds; where the batch cannot tell, as that run alone has it.
 
-    Raises RunError.
+    Cells that differ in nothing but what the link does besides its delays are one batch: the wider
+    it is, the less a robot costs in it. Raises RunError.
     """
-    scenarios, scenario = list(cell.runs()), cell.scenario
+    groups = defaultdict[str, list[int]](list)
+    for number, cell in enumerate(cells):
+        groups[_all_but_impairments(cell.scenario)].append(number)
+    judged: dict[int, Judgements] = {}
+    for numbers in groups.values():
+        together = _together([cells[number] for number in numbers])
+        judged.update(zip(numbers, together, strict=True))
+    return [judged[number] for number in range(len(cells))]
+
+
+def _all_but_impairments(scenario: Scenario) -> str:
+    """What robots of one batch must have in common."""
+    if is_ideal(scenario):
+        return scenario.model_dump_json()
+    delays = scenario.link.model_dump(include={"command_delay", "measurement_delay"})
+    return scenario.model_copy(update={"link": LinkTable(**delays)}).model_dump_json()
+
+
+def _together(cells: Sequence[Cell]) -> Iterator[Judgements]:
+    """One batch."""
+    scenario, scenarios = cells[0].scenario, [run for cell in cells for run in cell.runs()]
     many = run_many(scenarios)
     m = scenario.link.measurement_delay
     judged = judgements(_record(many), scenario.goal, scenario.sample_time, m)
@@ -24,7 +50,10 @@ def all_at_once(cell: Cell) -> Judgements:
         alone = judged_alone(scenarios[robot])
         for column, value in zip(judged, alone, strict=True):
             column[robot] = value[0]
-    return judged
+    first = 0
+    for cell in cells:
+        some = slice(first, first := first + len(cell.seeds))
+        yield Judgements._make(column[some] for column in judged)
 
 
 def _record(many: Many) -> Record:

@@ -1,6 +1,6 @@
-"""From a cell's description to its table: a pure function, wherever it is called."""
+"""From cells' descriptions to their tables: a pure function, wherever it is called."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import msgspec
 import numpy as np
@@ -16,9 +16,9 @@ DESCRIPTION = b"laglab.cell"
 """Where the table's metadata tell, as JSON, what the cell is."""
 
 
-def computed(cell: Cell) -> pa.Table:
-    """A row for each of the cell's seeds, in their order. Raises RunError."""
-    return table(cell, judged(cell))
+def computed(cells: Sequence[Cell]) -> list[pa.Table]:
+    """Of each, a row for each of its seeds, in their order. Raises RunError."""
+    return [table(*each) for each in zip(cells, judged(cells), strict=True)]
 
 
 def table(cell: Cell, became: Judgements) -> pa.Table:

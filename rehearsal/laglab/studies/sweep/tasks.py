@@ -3,13 +3,14 @@
 import io
 from collections.abc import Iterable, Iterator
 
+import pyarrow as pa
 import pyarrow.parquet as pq
 from msgspec import Struct
 
 from laglab.errors import RunError
 from laglab.studies.sweep.cell import Cell
 from laglab.studies.sweep.compute import computed
-from laglab.studies.sweep.ways import seconds
+from laglab.studies.sweep.ways import crowd, seconds
 from laglab.version import code_version
 
 WORTHWHILE = 0.1
@@ -27,13 +28,13 @@ class Task(Struct, frozen=True):
 def grouped(cells: Iterable[Cell]) -> Iterator[Task]:
     """In their order. Raises: ScenarioError."""
     some: list[Cell] = []
-    cost = 0.0
+    cost, robots = 0.0, 0
     for cell in cells:
         some.append(cell)
-        cost += seconds(cell)
-        if cost >= WORTHWHILE or len(some) == MOST_CELLS:
+        cost, robots = cost + seconds(cell), robots + len(cell.seeds)
+        if (cost >= WORTHWHILE and robots >= crowd(cell)) or len(some) == MOST_CELLS:
             yield Task(tuple(some), code_version())
-            some, cost = [], 0.0
+            some, cost, robots = [], 0.0, 0
     if some:
         yield Task(tuple(some), code_version())
 
@@ -47,10 +48,10 @@ def done(task: Task) -> list[bytes]:
         raise RunError(
             f"a worker has laglab {code_version()}, not {task.code} as here: install the same there"
         )
-    return [_file(cell) for cell in task.cells]
+    return [_file(table) for table in computed(task.cells)]
 
 
-def _file(cell: Cell) -> bytes:
+def _file(table: pa.Table) -> bytes:
     out = io.BytesIO()
-    pq.write_table(computed(cell), out)
+    pq.write_table(table, out)
     return out.getvalue()

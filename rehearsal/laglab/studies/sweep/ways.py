@@ -1,8 +1,9 @@
 """Which way a cell's runs are made, and about how long that takes."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
-from laglab.studies.many import why_one_by_one
+from laglab.studies.many import is_ideal, why_one_by_one
 from laglab.studies.sweep.all_at_once import all_at_once
 from laglab.studies.sweep.cell import Cell
 from laglab.studies.sweep.judged import Judgements
@@ -12,6 +13,10 @@ TICK_ALONE = 160e-6
 """[s] A tick of a run by itself takes about so long, with both sides and the bytes between them."""
 TICK_OF_A_BATCH, TICK_IN_A_BATCH = 400e-6, 0.8e-6
 """[s] A tick of however many robots, and what each of them adds."""
+TICK_IMPAIRED = 40e-6
+"""[s] A tick of one robot of many on an impaired link."""
+CROWD = 200
+"""Robots on impaired links: more of them would not be cheaper any more."""
 RUN_ALONE = 0.02
 """[s] Until the sides of a run are there."""
 
@@ -32,14 +37,23 @@ def how(cell: Cell) -> How:
     return How(because is None, because or "")
 
 
-def judged(cell: Cell) -> Judgements:
-    """What became of the cell's runs, made in whichever way. Raises RunError."""
-    return all_at_once(cell) if how(cell).batch else one_by_one(cell)
+def judged(cells: Sequence[Cell]) -> list[Judgements]:
+    """What became of every cell's runs, made in whichever way. Raises RunError."""
+    batch = [cell for cell in cells if how(cell).batch]
+    together = iter(all_at_once(batch))
+    return [next(together) if how(cell).batch else one_by_one(cell) for cell in cells]
+
+
+def crowd(cell: Cell) -> int:
+    """So many robots, of this cell and of others, are worth to be computed together."""
+    return CROWD if how(cell).batch and not is_ideal(cell.scenario) else 1
 
 
 def seconds(cell: Cell) -> float:
     """[s] About how long it takes, on one core."""
     ticks, robots = cell.scenario.must_end(), len(cell.seeds)
-    if how(cell).batch:
-        return ticks * (TICK_OF_A_BATCH + robots * TICK_IN_A_BATCH)
-    return robots * (RUN_ALONE + ticks * TICK_ALONE)
+    if not how(cell).batch:
+        return robots * (RUN_ALONE + ticks * TICK_ALONE)
+    if not is_ideal(cell.scenario):
+        return robots * ticks * TICK_IMPAIRED
+    return ticks * (TICK_OF_A_BATCH + robots * TICK_IN_A_BATCH)
