@@ -109,15 +109,11 @@ class _Loop:
             self._station.warn("settings", "the robot does not tell its settings")
 
     def answer_until_end(self) -> End:
-        while not self._station.closed:
-            self._tell_of_keys()
-            if self._answer(min(CALL_AGAIN, self._silence_timeout)):
-                continue
-            silence = monotonic() - self._heard
-            if silence >= self._silence_timeout:
-                break
-            if silence >= CALL_AGAIN:
-                self._call_every(CALL_AGAIN)
+        try:
+            self._answer_until_silence()
+        except FarEndGoneError:
+            if self._station.outcome is None:
+                raise
         if self._station.outcome is None:
             raise RobotSilentError(
                 f"{self._link.name}: the robot has been silent for {self._silence_timeout:g} s, "
@@ -125,6 +121,18 @@ class _Loop:
                 "link is up"
             )
         return self._station.outcome
+
+    def _answer_until_silence(self) -> None:
+        """Or until the run is over."""
+        while not self._station.closed:
+            self._tell_of_keys()
+            if self._answer(min(CALL_AGAIN, self._silence_timeout)):
+                continue
+            silence = monotonic() - self._heard
+            if silence >= self._silence_timeout:
+                return
+            if silence >= CALL_AGAIN:
+                self._call_every(CALL_AGAIN)
 
     def _call_every(self, period: float) -> None:
         """Bytes that are no frame yet, or never will be, make no call more frequent."""
@@ -152,6 +160,8 @@ class _Loop:
         try:
             frames = self._listener.listen(timeout)
         except FarEndGoneError as error:
+            if self._station.outcome is not None:
+                raise  # we have ended the run: nobody need come back
             self._reopen(error)
             return []
         frames = [frame for frame in frames if (frame.system, frame.component) == ROBOT]

@@ -103,6 +103,25 @@ def test_a_robot_that_falls_silent_is_named_with_its_last_tick(link):
     assert "the robot has been silent for 0.3 s, since its tick 1" in str(results[0])
 
 
+def test_a_robot_that_leaves_when_it_hears_of_the_end_is_not_waited_for(tmp_path):
+    """A serial port is gone with it, and what it said last."""
+    config, results = StationConfig(estimator="raw"), []
+    with open_endpoint(f"pty://{tmp_path / 'robot'}") as robot:
+        station = open_endpoint(f"serial://{tmp_path / 'robot'}:57600")
+        listener = Listener(station, Receiver())
+        thread = threading.Thread(
+            target=lambda: results.append(run_station(Station(config), listener))
+        )
+        thread.start()
+        lost = [Measurement(2000.0, 0.0, 0.0, 0.0, 0.0, 0, -1), Tick(1, 1)]
+        assert any(isinstance(heard, End) for heard in drive(robot, Tick(0, 0), lost))
+    gone_since = time.monotonic()
+    thread.join(5)
+    station.close()
+    assert results == [End(1, EndReason.DIVERGED)]
+    assert time.monotonic() - gone_since < 1.0
+
+
 @pytest.fixture
 def waiting():
     """A station that waits at an address of its own, and what its run gave."""

@@ -42,7 +42,7 @@ class Report:
 def _lines(report: Report) -> Iterator[str]:
     tally, machine = report.tally, report.machine
     yield f"`{report.command}`, laglab {report.laglab}, {report.began:%Y-%m-%d}, on {machine.cpus}"
-    yield f"cores, Python {machine.python}, {machine.platform}:"
+    yield f"cores, Python {machine.python}, {machine.platform.partition('-')[0]}:"
     yield ""
     yield f"**{verdict(report)}**"
     yield f"{tally.ticks} ticks, {tally.datagrams} datagrams from strangers."
