@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from laglab.errors import ResultsError
 from laglab.results.columns import Columns, column_pieces, read_columns
 from laglab.results.figure import draw
-from laglab.results.shadows import Shadow, beside, read_shadow, shadow_file
+from laglab.results.shadows import Shadow, beside, read_shadow, shadow_file, shadow_pieces
 from laglab.results.summary import Summary, read_summary
 from laglab.scenario import Scenario, load
 from laglab_gateway import (
@@ -128,6 +128,13 @@ class Run:
         return (
             self.kept.tables[name] if self.kept else read_columns(self._folder / name, ROWS[name])
         )
+
+    def shadow_pieces(self, name: str) -> Iterator[Shadow]:
+        """What an estimator said that shadowed the run, as many rows at a time as memory always has
+        room for. Raises NoRunError."""
+        if self.kept:
+            return iter([self.kept.shadows[name]])
+        return shadow_pieces(shadow_file(self._folder, name))
 
     @property
     def _folder(self) -> Path:
