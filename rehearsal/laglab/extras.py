@@ -12,13 +12,16 @@ class Need(Enum):
     STEPPING = "gateway", ("fmpy",)
     DRAWING = "run", ("matplotlib",)
     REHEARSING = "run", ("fmpy", "matplotlib")
+    PARQUET = "export", ("pyarrow",)
+    MATLAB = "export", ("scipy",)
+    BAGS = "export", ("mcap_ros2",)
 
     def __init__(self, extra: str, modules: tuple[str, ...]) -> None:
         self.extra = extra
         self.modules = modules
 
 
-STEPPING, DRAWING, REHEARSING = Need
+STEPPING, DRAWING, REHEARSING, PARQUET, MATLAB, BAGS = Need
 
 
 def require(need: Need) -> None:
