@@ -16,6 +16,7 @@ from laglab.command import main
 from laglab.export import export
 from laglab.export.formats import FORMATS
 from laglab.export.reference import page
+from laglab.export.tables import tables
 from laglab.results.meaning import FILES, tick_columns
 from laglab.results.run import Run
 from laglab.results.shadows import COLUMNS
@@ -174,6 +175,15 @@ def test_tables_without_a_row_have_their_columns() -> None:
     assert len(read["ticks"].x) == 4
     assert np.isnan(read["ticks"].p_xx).all()
     assert read["arrivals"].tick.size == 0
+
+
+def test_of_a_run_on_the_wall_clock_each_tick_has_its_lateness() -> None:
+    run = laglab.run("lab", {"pace": "realtime", "speed": 20.0, "duration": 0.5})
+    late = run.timing["tick"].astype(int)
+    assert len(late) > 40
+    (ticks,) = tables(run).ticks.pieces
+    for name in ("lateness", "answer"):
+        np.testing.assert_array_equal(ticks[name][late], run.timing[name])
 
 
 def test_the_columns_are_those_of_the_files() -> None:

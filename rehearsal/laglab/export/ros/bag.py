@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 from laglab.export.ros.mcap_file import Written, ros_name
 
-METADATA_FILE = "metadata.yaml"
 VERSION = 5
 """Of the format: that of ROS 2 Humble, which later ones read."""
 

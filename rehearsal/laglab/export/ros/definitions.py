@@ -30,7 +30,7 @@ DEFINITIONS = {
     "laglab_msgs/LinkEvent": (
         "# What the link did to one copy of a frame\n"
         "std_msgs/Header header  # when the frame entered\n"
-        "int64 tick              # in which it entered\n"
+        "int32 tick              # in which it entered\n"
         "uint32 frame            # its number in that tick\n"
         "uint32 copy             # which copy of it\n"
         "uint32 size             # bytes\n"
@@ -40,9 +40,9 @@ DEFINITIONS = {
     "laglab_msgs/Arrival": (
         "# A message that came out of the link\n"
         "std_msgs/Header header  # when it came\n"
-        "int64 tick              # that it is stamped with\n"
-        "int64 arrived           # the tick at which it came\n"
-        "int64 delay             # the one less the other, ticks\n"
+        "int32 tick              # that it is stamped with\n"
+        "int32 arrived           # the tick at which it came\n"
+        "int32 delay             # the one less the other, ticks\n"
         "string refused          # why the robot did not follow the command, or no"
     ),
 }
