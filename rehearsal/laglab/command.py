@@ -13,6 +13,7 @@ from laglab.commands import (
     consistency,
     errata,
     estimators,
+    export,
     fmu,
     maps,
     protocol,
@@ -63,6 +64,7 @@ app.command("scenarios")(scenarios.scenarios)
 app.command("estimators")(estimators.estimators)
 app.command("scenario")(scenario.scenario)
 app.command("compare")(compare.compare)
+app.command("export")(export.export)
 app.command("consistency")(consistency.consistency)
 app.command("trust")(trust.trust)
 app.command("soak")(soak.soak)

@@ -15,13 +15,26 @@ class Need(Enum):
     MAPPING = "study", ("matplotlib", "pyarrow")
     STUDYING = "study", ("fmpy", "pyarrow", "pandas")
     SPREADING = "study", ("distributed",)
+    PARQUET = "export", ("pyarrow",)
+    MATLAB = "export", ("scipy",)
+    BAGS = "export", ("mcap_ros2",)
 
     def __init__(self, extra: str, modules: tuple[str, ...]) -> None:
         self.extra = extra
         self.modules = modules
 
 
-STEPPING, DRAWING, REHEARSING, MAPPING, STUDYING, SPREADING = Need
+(
+    STEPPING,
+    DRAWING,
+    REHEARSING,
+    MAPPING,
+    STUDYING,
+    SPREADING,
+    PARQUET,
+    MATLAB,
+    BAGS,
+) = Need
 
 
 def require(need: Need) -> None:

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+import laglab
+
 HIDING = """
 import os, select, signal, socket, sys
 
@@ -133,6 +135,17 @@ def test_without_terminals_all_but_serial_works(
 def test_without_terminals_serial_says_so(windows: Python, arguments: tuple[str, ...]) -> None:
     said = one_line(windows("-m", "laglab", *arguments))
     assert "this system has no serial ports and ptys" in said
+
+
+def test_what_an_export_needs_is_said(tmp_path: Path) -> None:
+    """And without any of it there is CSV."""
+    bare = without(tmp_path, {"pyarrow", "scipy", "mcap_ros2", "mcap"})
+    laglab.run("fig6", {"duration": 0.1}, out=tmp_path / "run")
+    for name, missing in (("parquet", "pyarrow"), ("mat", "scipy"), ("ros2bag", "mcap_ros2")):
+        said = one_line(bare("-m", "laglab", "export", "run", "--format", name))
+        assert f"{missing} is not installed here: pip install 'laglab[export]'" in said
+    assert bare("-m", "laglab", "export", "run", "--format", "csv").returncode == 0
+    assert {path.name for path in tmp_path.iterdir()} == {"hiding", "run", "run-csv"}
 
 
 def test_without_fmpy_runs_are_compared_and_replayed(no_fmpy: Python, laglab: Python) -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+import laglab
 from laglab_gateway import read_trace
 from laglab_protocol import read_tlog
 
@@ -147,6 +148,16 @@ def test_when_only_the_figure_finds_no_room(small_disk: SmallDisk) -> None:
     small_disk.assert_whole()
     left = {path.name for path in (small_disk.kept / "run").iterdir()}
     assert left == {"scenario.toml", "trace.csv", "robot.tlog", "summary.json"}
+
+
+@pytest.mark.parametrize("name", ["csv", "parquet", "mat", "mcap"])
+def test_of_an_export(small_disk: SmallDisk, tmp_path: Path, name: str) -> None:
+    laglab.run("lab", {"duration": 3.0}, out=tmp_path / "whole")
+    export = small_disk.start("export", "whole", "--format", name, size=20)
+    place = r"small/run(/ticks\.\w+)?"
+    line = rf"laglab: cannot write {place}: (No space left on device|File too large)"
+    assert_one_line(said(export, 4), line)
+    assert not [path for path in small_disk.kept.rglob("*") if path.is_file()]
 
 
 @pytest.mark.parametrize("name", ["summary.json", "figure.png"])

@@ -37,6 +37,11 @@ def offer_to_pymavlink() -> None:
     dialects.__path__.append(str(GENERATED.parent))
 
 
+def place_in_pymavlink() -> Path:
+    """Where pymavlink's tools look for the dialect that is asked for as `--dialect laglab`."""
+    return carried_dialects() / GENERATED.name
+
+
 def generate(xml: Path, language: str, output: Path) -> None:
     """Run mavgen (MAVLink 2) on `xml`, which may include the dialects that pymavlink carries.
 

@@ -16,7 +16,13 @@ from laglab_conformance import Pace, Scope, Side, Waits
 from laglab_conformance import conform as test_conformance
 from laglab_protocol import make_key, read_key
 from laglab_protocol.dialect.lint import lint as find_faults
-from laglab_protocol.dialect.mavgen import LANGUAGES, dialect_path, generate_into
+from laglab_protocol.dialect.mavgen import (
+    GENERATED,
+    LANGUAGES,
+    dialect_path,
+    generate_into,
+    place_in_pymavlink,
+)
 
 app = group("The dialect, for those who write the other side.")
 
@@ -51,6 +57,18 @@ def generate(
     For firmware (C), programs (Python3), or as a dissector for Wireshark (WLua).
     """
     print(generate_into(lang, folder_place("DIR", directory), dialect))
+
+
+@app.command()
+def install() -> None:
+    """Teach the pymavlink installed here the dialect.
+
+    From then on its tools know it: mavlogdump.py --dialect laglab robot.tlog.
+    """
+    path = file_place("pymavlink:", place_in_pymavlink())
+    with whole_file(path) as file:
+        file.write(GENERATED.read_bytes())
+    print(path)
 
 
 @app.command()

@@ -2,6 +2,7 @@
 
 import csv
 from collections.abc import Iterable, Iterator
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -61,15 +62,27 @@ def collected(rows: Iterable[ShadowRow]) -> Shadow:
 
 
 def read_shadow(path: Path) -> Shadow:
-    """What `kept_rows` wrote. Raises ResultsError when the file is no shadow's."""
+    """What `kept_rows` wrote. Raises NoRunError when the file is no shadow's."""
+    pieces = list(shadow_pieces(path))
+    return {name: np.concatenate([piece[name] for piece in pieces]) for name in COLUMNS}
+
+
+def shadow_pieces(path: Path, rows: int = 5_000) -> Iterator[Shadow]:
+    """The same, so many rows at a time; one piece at least, if without a row."""
     try:
         with path.open(newline="", encoding="utf-8") as file:
-            header, *cells = csv.reader(file)
-            table = np.array(cells, dtype=np.float64).reshape(-1, len(COLUMNS))
+            lines = csv.reader(file)
+            if next(lines, None) != list(COLUMNS):
+                raise NoRunError(f"{path}: expected the columns {','.join(COLUMNS)}")
+            yield _columns([])
+            while piece := list(islice(lines, rows)):
+                yield _columns(piece)
     except (OSError, ValueError, csv.Error) as error:
         raise NoRunError(f"{path} is not what an estimator said: {error}") from error
-    if header != list(COLUMNS):
-        raise NoRunError(f"{path}: expected the columns {','.join(COLUMNS)}")
+
+
+def _columns(lines: list[list[str]]) -> Shadow:
+    table = np.array(lines, dtype=np.float64).reshape(-1, len(COLUMNS))
     return dict(zip(COLUMNS, table.T, strict=True))
 
 

@@ -1,0 +1,1 @@
+"""A run as ROS 2 messages."""

@@ -1,0 +1,204 @@
+"""A run in other programs' formats: they read back what it holds."""
+
+import csv
+import re
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow.parquet
+import pytest
+import scipy.io
+
+import laglab
+from laglab.command import main
+from laglab.export import export
+from laglab.export.formats import FORMATS
+from laglab.export.reference import page
+from laglab.export.tables import tables
+from laglab.results.meaning import FILES, tick_columns
+from laglab.results.run import Run
+from laglab.results.shadows import COLUMNS
+from laglab_gateway import ROWS, TRACE_FILE, TraceRow
+
+DOCS = Path(__file__).parents[2] / "docs"
+SHADOW = "popf-exact"
+SHADOW_FILE = f"shadow-{SHADOW}.csv"
+
+
+@pytest.fixture(scope="module")
+def a_run(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """With all that a run can leave but a clock: losses, delays, and a filter that shadows it."""
+    folder = tmp_path_factory.mktemp("runs") / "radio"
+    changes = {"duration": 2.0, "estimator.compare": [SHADOW], "link.command.loss": 0.2}
+    return laglab.run("lab-radio", changes, out=folder)
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def exported(run: Run, *options: str) -> Path:
+    """By the command."""
+    assert run.directory is not None
+    with pytest.raises(SystemExit) as ended:
+        main(["export", str(run.directory), "--format", *options])
+    assert ended.value.code == 0
+    return Path.cwd()
+
+
+def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    """The one line that is said."""
+    capsys.readouterr()
+    with pytest.raises(SystemExit) as ended:
+        main(["export", *arguments])
+    said = capsys.readouterr()
+    assert (ended.value.code, said.out) == (2, "")
+    (line,) = said.err.splitlines()
+    return line
+
+
+def known(run: Run) -> dict[str, Any]:
+    """All columns of its ticks."""
+    claims = {name: column for name, column in run.claims.items() if name.startswith("p_")}
+    (shadow,) = (piece for piece in run.shadow_pieces(SHADOW) if len(piece["tick"]))
+    assert (shadow["tick"] == run.trace["tick"]).all()
+    beside = {f"{name}_{SHADOW}": shadow[name] for name in COLUMNS[1:]}
+    nothing = np.full(len(run.trace["tick"]), np.nan)
+    return dict(run.trace) | claims | beside | {"lateness": nothing, "answer": nothing}
+
+
+def assert_equal(read: dict[str, Any], expected: dict[str, Any]) -> None:
+    assert read.keys() == expected.keys()
+    for name, column in expected.items():
+        np.testing.assert_array_equal(read[name], column, name)
+
+
+def test_csv_reads_back(a_run: Run) -> None:
+    folder = exported(a_run, "csv") / "radio-csv"
+    with (folder / "ticks.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert rows[7]["tick"] == "7"
+    assert list(rows[0]) == [column.name for column in tick_columns([SHADOW])]
+    read = {name: [float(row[name] or "nan") for row in rows] for name in rows[0]}
+    assert_equal(read, known(a_run))
+    for name in ("link.csv", "arrivals.csv"):
+        assert a_run.directory
+        assert (folder / name).read_text() == (a_run.directory / name).read_text()
+
+
+def test_parquet_reads_back_and_says_its_units(a_run: Run) -> None:
+    folder = exported(a_run, "parquet") / "radio-parquet"
+    ticks = pyarrow.parquet.read_table(folder / "ticks.parquet")
+    assert_equal({name: ticks[name].to_numpy() for name in ticks.column_names}, known(a_run))
+    for column in tick_columns([SHADOW]):
+        about = ticks.schema.field(column.name).metadata
+        assert about[b"unit"].decode() == column.unit
+        assert about[b"description"].decode() == column.sentence
+    assert ticks["answer"].null_count == len(ticks)
+    assert ticks.schema.metadata[b"scenario"].decode() == a_run.scenario.to_toml()
+    for name, expected in (("link", a_run.link), ("arrivals", a_run.arrivals)):
+        read = pyarrow.parquet.read_table(folder / f"{name}.parquet").to_pydict()
+        assert_equal(read, dict(expected))
+
+
+def test_mat_reads_back_and_says_its_units(a_run: Run) -> None:
+    exported(a_run, "mat")
+    read = scipy.io.loadmat("radio.mat", squeeze_me=True, struct_as_record=False)
+    expected = {name.replace("-", "_"): column for name, column in known(a_run).items()}
+    assert_equal(vars(read["ticks"]) | {"_fieldnames": 0}, expected | {"_fieldnames": 0})
+    assert read["link"].fate.tolist() == a_run.link["fate"].tolist()
+    assert read["units"].ticks.p_xt_popf_exact == "m rad"
+    assert read["scenario"] == a_run.scenario.to_toml()
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_the_same_run_gives_the_same_bytes(name: str, a_run: Run, tmp_path: Path) -> None:
+    ending = FORMATS[name].ending  # type: ignore[index]
+    contents = []
+    for _ in range(2):
+        place = exported(a_run, name, "--force") / f"radio{ending}"
+        files = sorted(place.iterdir()) if place.is_dir() else [place]
+        contents.append([path.read_bytes() for path in files])
+    assert contents[0] == contents[1]
+    assert {each.name for each in tmp_path.iterdir()} == {f"radio{ending}"}
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_what_is_there_is_kept(name: str, a_run: Run, capsys: pytest.CaptureFixture[str]) -> None:
+    form = FORMATS[name]  # type: ignore[index]
+    place = Path(f"radio{form.ending}")
+    place = place / form.files[0] if form.files else place
+    place.parent.mkdir(exist_ok=True)
+    place.write_text("kept")
+    line = refused(capsys, str(a_run.directory), "--format", name)
+    assert line == f"laglab: {place} is there already: say another --out, or --force"
+    assert place.read_text() == "kept"
+    exported(a_run, name, "--force")
+    assert place.read_bytes() != b"kept"
+
+
+def test_what_cannot_be_is_a_line(a_run: Run, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("empty").mkdir()
+    assert "empty/summary.json" in refused(capsys, "empty", "--format", "csv")
+    assert "'xlsx' is not one of 'csv'" in refused(capsys, str(a_run.directory), "--format", "xlsx")
+    for name, place in (("csv", "empty/file/below"), ("mcap", "empty"), ("mat", "/proc/none")):
+        Path("empty/file").write_text("")
+        options = ("--format", name, "--out", place)
+        assert place in refused(capsys, str(a_run.directory), *options)
+
+
+@pytest.mark.parametrize("damage", [("tick", "tock"), ("1", "1e308")])
+@pytest.mark.parametrize("file", ["trace.csv", "claims.csv", "arrivals.csv", SHADOW_FILE])
+def test_a_damaged_table_is_told_in_a_line(
+    file: str, damage: tuple[str, str], a_run: Run, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert a_run.directory
+    shutil.copytree(a_run.directory, "run")
+    Path("run", file).write_text((a_run.directory / file).read_text().replace(*damage))
+    for name in ("csv", "mcap"):
+        assert "run" in refused(capsys, "run", "--format", name)
+    assert not Path("run.mcap").exists()
+
+
+def test_tables_without_a_row_have_their_columns() -> None:
+    """Before any message came; in memory, without a filter."""
+    run = laglab.run("fig5", {"duration": 0.03})
+    folder = export(run, "csv")
+    assert (folder / "arrivals.csv").read_text() == "direction,tick,arrived,time,refused\n"
+    assert (folder / "ticks.csv").read_text().splitlines()[1].endswith("," * 8)
+    link = pyarrow.parquet.read_table(export(run, "parquet") / "link.parquet")
+    assert (len(link), link["tick"].type, link["fate"].type) == (0, "int64", "string")
+    read = scipy.io.loadmat(export(run, "mat"), struct_as_record=False, squeeze_me=True)
+    assert len(read["ticks"].x) == 4
+    assert np.isnan(read["ticks"].p_xx).all()
+    assert read["arrivals"].tick.size == 0
+
+
+def test_of_a_run_on_the_wall_clock_each_tick_has_its_lateness() -> None:
+    run = laglab.run("lab", {"pace": "realtime", "speed": 20.0, "duration": 0.5})
+    late = run.timing["tick"].astype(int)
+    assert len(late) > 40
+    (ticks,) = tables(run).ticks.pieces
+    for name in ("lateness", "answer"):
+        np.testing.assert_array_equal(ticks[name][late], run.timing[name])
+
+
+def test_the_columns_are_those_of_the_files() -> None:
+    rows = {TRACE_FILE: TraceRow._fields} | {name: kind._fields for name, kind in ROWS.items()}
+    names = {name: tuple(each.name for each in columns) for name, columns in FILES.items()}
+    assert names == rows | {"shadow-NAME.csv": COLUMNS}
+
+
+def test_the_reference_of_the_topics_is_up_to_date() -> None:
+    written = (DOCS / "reference" / "topics.md").read_text(encoding="utf-8")
+    assert written == page(), "run: python docs/reference/generate.py"
+
+
+def test_the_pages_example(capsys: pytest.CaptureFixture[str]) -> None:
+    text = (DOCS / "export.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"^```python\n(.*?)^```", text, re.DOTALL | re.M)
+    exec(block, {})
+    assert 'name = "lab"' in capsys.readouterr().out
