@@ -13,6 +13,7 @@ from laglab.commands import (
     consistency,
     errata,
     estimators,
+    figure,
     fmu,
     protocol,
     replay,
@@ -58,6 +59,7 @@ app.command("replay")(replay.replay)
 app.command("scenarios")(scenarios.scenarios)
 app.command("estimators")(estimators.estimators)
 app.command("scenario")(scenario.scenario)
+app.command("figure")(figure.figure)
 app.command("compare")(compare.compare)
 app.command("consistency")(consistency.consistency)
 app.command("trust")(trust.trust)
