@@ -14,6 +14,7 @@ from laglab.commands import (
     errata,
     estimators,
     export,
+    figure,
     fmu,
     maps,
     protocol,
@@ -63,6 +64,7 @@ app.command("replay")(replay.replay)
 app.command("scenarios")(scenarios.scenarios)
 app.command("estimators")(estimators.estimators)
 app.command("scenario")(scenario.scenario)
+app.command("figure")(figure.figure)
 app.command("compare")(compare.compare)
 app.command("export")(export.export)
 app.command("consistency")(consistency.consistency)

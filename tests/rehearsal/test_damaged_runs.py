@@ -8,6 +8,7 @@ import pytest
 from laglab.command import main
 
 COMPARE = ("compare", "run", "--out", "both.png")
+FIGURE = ("figure", "run", "--out", "again.png")
 REPLAY = ("replay", "run/robot.tlog", "--estimator", "popf")
 REPEAT = ("run", "run/scenario.toml", "--timeline", "run/link.csv", "--transport", "inline")
 READ_BY = {
@@ -17,6 +18,8 @@ READ_BY = {
     "link.csv": (REPEAT,),
     "robot.tlog": (REPLAY,),
     "shadow-ekf.csv": (COMPARE,),
+    "arrivals.csv": (COMPARE, FIGURE),
+    "claims.csv": (FIGURE,),
 }
 JUNK = {
     "empty": b"",
@@ -28,6 +31,8 @@ JUNK = {
 GOOD_AS_FAR_AS_IT_GOES = {
     ("scenario.toml", "empty"),
     ("trace.csv", "half"),
+    ("arrivals.csv", "half"),
+    ("claims.csv", "half"),
     ("robot.tlog", "half"),
 }
 """An empty scenario runs by default; a record that was cut off is that of a shorter run."""

@@ -5,8 +5,9 @@ from typing import Annotated
 
 import typer
 
+from laglab.commands.figure import WidthOption
 from laglab.extras import DRAWING, require
-from laglab.results.figure import draw_side_by_side, picture_place, save
+from laglab.results.figures import draw_runs, picture_place, save
 from laglab.results.run import open_run
 
 
@@ -15,10 +16,13 @@ def compare(
     out: Annotated[
         Path, typer.Option("--out", metavar="FILE", help="The picture: PNG, PDF, SVG and others.")
     ] = Path("compare.png"),
+    width: WidthOption = "two",
 ) -> None:
-    """Draw several runs in one picture, a row each."""
+    """Lay several runs over each other in one picture.
+
+    On equal axes; the title says in which keys of the scenario they differ.
+    """
     require(DRAWING)
     picture_place(out)
-    opened = [open_run(directory) for directory in runs]
-    save(draw_side_by_side([(run.drawn, run.scenario, run.alarms) for run in opened]), out)
+    save(draw_runs([open_run(directory) for directory in runs], width), out)
     print(out)

@@ -8,11 +8,12 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from laglab.commands.figure import WidthOption
 from laglab.commands.options import on_scenario
 from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, require
 from laglab.progress import tracked
-from laglab.results.figure import picture_place, save
+from laglab.results.figures import picture_place, save
 from laglab.scenario import Scenario
 from laglab.scenario.tables.estimator import COMPARABLE
 from laglab.studies.consistency import nth, samples, verdict
@@ -42,6 +43,7 @@ def consistency(
     out: Annotated[Path, typer.Option("--out", metavar="FILE", help="The picture.")] = Path(
         "consistency.png"
     ),
+    width: WidthOption = "two",
 ) -> None:
     """Hold what each filter claims against its errors, over seeds.
 
@@ -57,7 +59,7 @@ def consistency(
     verdicts = [verdict(name, [sample[name] for sample in got], m) for name in names]
     console = Console()
     console.print(consistency_table(scenario, verdicts, seeds))
-    save(draw_consistency(scenario, verdicts), out)
+    save(draw_consistency(scenario, verdicts, width), out)
     console.print(f"picture in {out}", highlight=False)
 
 

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from laglab.extras import MAPPING, require
-from laglab.results.figure import picture_place, save
+from laglab.results.figures import picture_place, save
 from laglab.studies.maps import draw_study, read_runs
 
 

@@ -6,9 +6,10 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from laglab.commands.figure import WidthOption
 from laglab.errors import ScenarioError
 from laglab.extras import DRAWING, require
-from laglab.results.figure import save
+from laglab.results.figures import save
 from laglab.results.replaying import draw_replays, replays_table
 from laglab.results.run import SCENARIO_FILE
 from laglab.results.shadows import collected, kept_rows, shadow_rows
@@ -48,6 +49,7 @@ def replay(
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Where results go.")] = Path(
         "replay"
     ),
+    width: WidthOption = "two",
 ) -> None:
     """Estimate again from the log of a run, simulated or real."""
     require(DRAWING)
@@ -63,6 +65,6 @@ def replay(
     replays = {
         name: collected(kept_rows(rows, directory / f"{name}.csv")) for name, rows in asked.items()
     }
-    save(draw_replays(told, session, replays, trace), directory / "replay.png")
+    save(draw_replays(told, session, replays, trace, width), directory / "replay.png")
     Console().print(replays_table(replays, trace))
     Console().print(f"results in {out}", highlight=False, soft_wrap=True)

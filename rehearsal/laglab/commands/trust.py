@@ -10,7 +10,7 @@ from rich.console import Console
 from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, require
 from laglab.progress import tracked
-from laglab.results.figure import picture_place, save
+from laglab.results.figures import picture_place, save
 from laglab.studies.trust import CONDITIONS, DEFAULT, fared, stations
 from laglab.studies.trust_report import draw_trust, scores, trust_table
 from laglab_control import ESTIMATORS

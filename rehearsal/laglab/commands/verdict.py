@@ -9,7 +9,7 @@ from rich.console import Console
 
 from laglab.errors import RefusedError, ResultsError, RunError
 from laglab.results.complete import Way, complete
-from laglab.results.figure import FIGURE_FILE
+from laglab.results.figures import FIGURE_FILE
 from laglab.results.run import Run
 from laglab.results.table import results_table, warnings
 from laglab.runs.ending import Ending

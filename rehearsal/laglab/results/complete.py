@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from laglab.errors import RefusedError, RunError
 from laglab.results.columns import Columns, columns_of
 from laglab.results.digest import Digest, digest
-from laglab.results.figure import save_figure
+from laglab.results.figures import save_figure
 from laglab.results.numbers import goal_errors, has_converged, robot_pose
 from laglab.results.run import Kept, Run
 from laglab.results.shadows import (

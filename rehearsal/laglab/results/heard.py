@@ -19,15 +19,17 @@ def heard_ticks(session: Iterable[SessionTick], sample_time: float) -> Iterator[
     """Each tick with the measurements that came with it; with the commands that the robot says, for
     the first time, were in force; and with what the station claimed."""
     first: int | None = None
-    in_force = -1
+    in_force, last = -1, -1
     for heard in session:
         first = heard.tick if first is None else first
         arrivals: list[ArrivalRow] = []
         for z in heard.measurements:
             arrivals.append(_arrival("measurement", z.tick, heard.tick, first, sample_time))
-            if z.command_tick > in_force and z.tick > first:
+            if z.command_tick > in_force:
                 in_force = z.command_tick
-                arrivals.append(_arrival("command", in_force, z.tick - 1, first, sample_time))
+                if z.tick == last + 1 and z.tick > first:  # else it may be in force for longer
+                    arrivals.append(_arrival("command", in_force, z.tick - 1, first, sample_time))
+            last = z.tick
         time = (heard.tick - first) * sample_time
         claims = [claimed(heard.estimate, time)] if heard.estimate else []
         yield HeardTick(heard, arrivals, claims)

@@ -38,6 +38,11 @@ def robot_pose(trace: Trace) -> Array:
     return np.stack([trace[axis + suffix] for axis in AXES], axis=1)
 
 
+def measurements(trace: Trace) -> Array:
+    """z_k as sampled, shape (ticks + 1, 3)."""
+    return np.stack([trace[f"{axis}_meas"] for axis in AXES], axis=1)
+
+
 def loop_estimates(trace: Trace) -> Array:
     """x̂_k of the estimator in the loop, shape (ticks + 1, 3)."""
     return np.stack([trace[f"{axis}_est"] for axis in AXES], axis=1)

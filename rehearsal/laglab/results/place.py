@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 from laglab.errors import PlaceError
-from laglab.results.figure import FIGURE_FILE
+from laglab.results.figures import FIGURE_FILE
 from laglab.results.run import SCENARIO_FILE
 from laglab.results.shadows import shadow_file
 from laglab.results.summary import SUMMARY_FILE

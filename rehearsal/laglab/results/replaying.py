@@ -9,18 +9,28 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.table import Table
 
-from laglab.results.figure import empty_figure
-from laglab.results.numbers import deviation
+from laglab.results.figures import INCHES, Width, legend, line, printed, sheet
+from laglab.results.figures.panels import (
+    COMPONENTS,
+    ERRORS,
+    around,
+    draw_measured,
+    marked,
+    symmetric,
+)
+from laglab.results.numbers import deviation, robot_pose
 from laglab.results.shadows import Shadow
 from laglab.scenario import Scenario
 from laglab_gateway import Trace
+from laglab_protocol import Measurement
 from laglab_station import SessionTick
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 Replays = Mapping[str, Shadow]
-AXES = ("x [m]", "y [m]", "θ [rad]")
+VARIANCES = ("p_xx", "p_yy", "p_tt")
 
 
 def estimates(replayed: Shadow) -> NDArray[np.float64]:
@@ -28,12 +38,17 @@ def estimates(replayed: Shadow) -> NDArray[np.float64]:
     return np.stack([replayed[axis] for axis in ("x", "y", "theta")], axis=1)
 
 
-def rms_deviation(replayed: Shadow, trace: Trace) -> list[float]:
-    """Root mean square deviation from the true poses in x, y, θ; NaN where nothing was said."""
+def off(replayed: Shadow, trace: Trace) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Ticks that are in the trace, and the estimate less the pose there, shape (ticks, 3)."""
     rows = np.searchsorted(trace["tick"], replayed["tick"])
     there = rows < len(trace["tick"])
     true = {name: column[rows[there]] for name, column in trace.items()}
-    error = deviation(true, estimates(replayed)[there])
+    return replayed["tick"][there], deviation(true, estimates(replayed)[there])
+
+
+def rms_deviation(replayed: Shadow, trace: Trace) -> list[float]:
+    """Root mean square deviation from the true poses in x, y, θ; NaN where nothing was said."""
+    _, error = off(replayed, trace)
     if np.isnan(error).all():
         return [np.nan] * 3
     return [float(value) for value in np.sqrt(np.nanmean(error**2, axis=0))]
@@ -56,22 +71,61 @@ def _spelled(numbers: Sequence[float]) -> str:
 
 
 def draw_replays(
-    scenario: Scenario, session: Sequence[SessionTick], replays: Replays, trace: Trace | None
+    scenario: Scenario,
+    session: Sequence[SessionTick],
+    replays: Replays,
+    trace: Trace | None,
+    width: Width = "two",
 ) -> Figure:
-    """Each component over time: measurements, estimates and, where known, the true pose."""
-    figure = empty_figure(13, 4)
-    Ts = scenario.sample_time
-    sampled = [message for heard in session for message in heard.measurements]
-    times = [message.tick * Ts for message in sampled]
-    for i, (axes, label) in enumerate(zip(figure.subplots(1, 3), AXES, strict=True)):
-        measured = [message.pose[i] for message in sampled]
-        axes.plot(times, measured, ".", markersize=1, label="measured")
-        for name, replayed in replays.items():
-            axes.plot(replayed["tick"] * Ts, estimates(replayed)[:, i], label=name)
-        if trace:
-            pose = trace[("x", "y", "theta")[i]]
-            axes.plot(trace["time"], pose, "k:", label="true")
-        axes.set(xlabel="t [s]", title=label)
-        axes.grid(alpha=0.3)
-    figure.axes[0].legend()
+    """Each component over time: measurements, estimates and, where known, the true pose; below
+    what each estimate was off by, between ±2σ of what it claims."""
+    rows = 2 if trace else 1
+    with printed():
+        figure = sheet(INCHES[width], 0.3 + 1.5 * rows if width == "two" else 1.2 * 3 * rows)
+        grid = (rows, 3) if width == "two" else (3 * rows, 1)
+        panels = figure.subplots(*grid, squeeze=False).ravel()
+        sampled = [message for heard in session for message in heard.measurements]
+        for i in range(3):
+            _draw_estimates(panels[i], scenario, sampled, replays, trace, i)
+            if trace:
+                _draw_deviations(panels[3 + i], scenario, replays, trace, i)
+        legend(panels[0])
+        figure.align_ylabels()
     return figure
+
+
+def _draw_estimates(
+    axes: Axes,
+    scenario: Scenario,
+    sampled: Sequence[Measurement],
+    replays: Replays,
+    trace: Trace | None,
+    i: int,
+) -> None:
+    Ts = scenario.sample_time
+    draw_measured(axes, [z.tick * Ts for z in sampled], [z.pose[i] for z in sampled])
+    if trace:
+        axes.plot(trace["tick"] * Ts, robot_pose(trace)[:, i], "k:", zorder=3, label="true")
+    for number, (name, replayed) in enumerate(replays.items()):
+        time, values = replayed["tick"] * Ts, estimates(replayed)[:, i]
+        marked(axes, time, values, line(number), number, name)
+    if sampled:
+        around(axes, np.array([z.pose[i] for z in sampled]))
+    axes.set(xlabel="t [s]", ylabel=COMPONENTS[i])
+
+
+def _draw_deviations(
+    axes: Axes, scenario: Scenario, replays: Replays, trace: Trace, i: int
+) -> None:
+    errors, claims = [], []
+    for number, (name, replayed) in enumerate(replays.items()):
+        ticks, error = off(replayed, trace)
+        time = ticks * scenario.sample_time
+        marked(axes, time, error[:, i], line(number), number, name)
+        errors.append(error[:, i])
+        two_sigma = 2 * np.sqrt(np.maximum(replayed[VARIANCES[i]][: len(ticks)], 0))
+        claims.append(two_sigma)
+        for edge in (-two_sigma, two_sigma):
+            axes.plot(time, edge, color=line(number).color, linewidth=0.4)
+    symmetric(axes, errors, np.concatenate(claims))
+    axes.set(xlabel="t [s]", ylabel=ERRORS[i])

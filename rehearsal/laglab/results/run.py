@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab.errors import ResultsError
-from laglab.results.columns import Columns, column_pieces, read_columns
-from laglab.results.figure import draw
+from laglab.results.columns import Columns, column_pieces, columns_of, joined, read_columns
+from laglab.results.figures import Width, draw_run
 from laglab.results.shadows import Shadow, beside, read_shadow, shadow_file, shadow_pieces
 from laglab.results.summary import Summary, read_summary
 from laglab.scenario import Scenario, load
@@ -98,9 +98,10 @@ class Run:
             return iter([self.kept.tables[name]])
         return column_pieces(self._folder / name, ROWS[name])
 
-    def figure(self) -> Figure:
-        """The run as a picture, to be shown or saved. Needs matplotlib."""
-        return draw(self.drawn, self.scenario, self.alarms)
+    def figure(self, width: Width = "two") -> Figure:
+        """The run as a picture as wide as so many columns of a page, to be shown or saved. Needs
+        matplotlib."""
+        return draw_run(self, width)
 
     @property
     def alarms(self) -> list[int]:
@@ -112,6 +113,24 @@ class Run:
     def drawn(self) -> Trace:
         """As much of the trace as a figure shows."""
         return _thinned(self.trace) if self.kept or self._is_short else self._read_thinned()
+
+    def drawn_table(self, name: str) -> Columns:
+        """As much of the rows of one of the other files as a figure shows."""
+        pieces = (
+            {column: cells[:: self.stride].copy() for column, cells in each.items()}
+            for each in self.table_pieces(name)
+        )
+        return joined([columns_of([], ROWS[name]), *pieces])
+
+    @property
+    def stride(self) -> int:
+        """Of so many rows a figure shows one."""
+        return max(1, -(-self.summary.ticks // MOST_DRAWN))
+
+    @cached_property
+    def first_tick(self) -> int:
+        """A real robot's first is any."""
+        return int(next(self.pieces())["tick"][0])
 
     def to_pandas(self) -> pandas.DataFrame:
         """The trace, a row a tick, indexed by `tick`. Needs pandas."""
@@ -153,9 +172,10 @@ class Run:
 
     def _read_thinned(self) -> Trace:
         """Read so that what is not drawn is never in memory together."""
-        stride = -(-self.summary.ticks // MOST_DRAWN)
         pieces = [
-            {name: column[::stride].copy() for name, column in each.items()}  # no view of it all
+            {
+                name: column[:: self.stride].copy() for name, column in each.items()
+            }  # no view of it all
             for each in self.pieces()
         ]
         whole = {name: np.concatenate([each[name] for each in pieces]) for name in pieces[0]}

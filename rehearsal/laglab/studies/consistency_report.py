@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.table import Table
 
-from laglab.results.figure import empty_figure
+from laglab.results.figures import INCHES, Width, legend, line, printed, sheet
+from laglab.results.figures.panels import marked
+from laglab.results.figures.style import BLUE, GREY, PALE
 from laglab.scenario import Scenario
-from laglab.studies.consistency import Average, Verdict, mean_of_known
+from laglab.studies.consistency import CONFIDENCE, DEGREES, Average, Verdict, mean_of_known
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -58,50 +60,61 @@ def _cells(verdict: Verdict) -> list[str]:
     ]
 
 
-def draw_consistency(scenario: Scenario, verdicts: Sequence[Verdict]) -> Figure:
-    """Average NEES, NIS and NEES of the prediction against their bounds, a panel a filter; each
-    run's own NEES; and claimed against true errors."""
-    figure = empty_figure(13, 3 + 2.2 * len(verdicts))
-    ticks = np.arange(len(verdicts[0].nees.values)) + scenario.link.measurement_delay
+def draw_consistency(
+    scenario: Scenario, verdicts: Sequence[Verdict], width: Width = "two"
+) -> Figure:
+    """Average NEES, NIS and NEES of the prediction against their bounds, a panel a filter; and by
+    how much each filter claims more, or less, than is true."""
+    m = scenario.link.measurement_delay
+    ticks = np.arange(len(verdicts[0].nees.values)) + m
     time = np.asarray(ticks * scenario.sample_time, dtype=np.float64)
-    rows = figure.subplots(len(verdicts) + 1, 3, squeeze=False)
-    for panels, verdict in zip(rows, verdicts, strict=False):
-        for axes, (name, average) in zip(panels, _averages(verdict).items(), strict=True):
-            _draw_average(axes, f"{verdict.estimator}: {name}", time, average, verdict.bounds)
-    for i, (panel, name) in enumerate(zip(rows[-1], AXES, strict=True)):
-        _draw_errors(panel, f"error in {name}: true (full), claimed (dashed)", time, verdicts, i)
-    rows[-1][0].legend(fontsize="small")
-    figure.suptitle(f"{scenario.name}: is the claimed covariance the true one?")
+    with printed():
+        figure = sheet(INCHES[width], 0.9 * len(verdicts) + 1.8)
+        above, below = figure.subfigures(
+            2, 1, squeeze=False, height_ratios=(len(verdicts), 1.3)
+        ).flat
+        panels = above.subplots(len(verdicts), 3, squeeze=False, sharex=True, sharey="col")
+        for row, verdict in zip(panels, verdicts, strict=True):
+            for axes, average in zip(row, _averages(verdict).values(), strict=True):
+                _draw_average(axes, time, average, verdict.bounds)
+            row[0].set_ylabel(verdict.estimator)
+        for axes, name in zip(panels[0], _averages(verdicts[0]), strict=True):
+            axes.set_title(name)
+        for i, (axes, name) in enumerate(zip(below.subplots(1, 3), AXES, strict=True)):
+            _draw_claims(axes, name, time, verdicts, i)
+        legend(below.axes[0])
+        figure.suptitle(
+            f"{scenario.name}: is the claimed covariance the true one? Average of the seeds; grey: "
+            f"{CONFIDENCE:.0%} of a consistent filter's"
+            if width == "two"
+            else scenario.name
+        )
     return figure
 
 
 def _averages(verdict: Verdict) -> dict[str, Average]:
-    return {"NEES": verdict.nees, "NIS": verdict.nis, "NEES of x̂_{k+n}": verdict.nees_ahead}
+    return {"NEES": verdict.nees, "NIS": verdict.nis, "NEES of x̂(k+n)": verdict.nees_ahead}
 
 
 def _draw_average(
-    axes: Axes,
-    title: str,
-    time: NDArray[np.float64],
-    average: Average,
-    bounds: tuple[float, float],
+    axes: Axes, time: NDArray[np.float64], average: Average, bounds: tuple[float, float]
 ) -> None:
-    axes.semilogy(time, average.values, linewidth=0.8)
-    axes.axhspan(*bounds, color="grey", alpha=0.4)
-    axes.set(xlabel="t [s]", title=title, ylim=(min(0.5, axes.get_ylim()[0]), None))
-    axes.grid(alpha=0.3)
+    axes.axhspan(*bounds, color=PALE, zorder=0.5)
+    axes.axhline(DEGREES, color=GREY, linewidth=0.6, linestyle=":")
+    axes.semilogy(time, average.values, color=BLUE, linewidth=0.6)
 
 
-def _draw_errors(
+def _draw_claims(
     axes: Axes,
-    title: str,
+    name: str,
     time: NDArray[np.float64],
     verdicts: Sequence[Verdict],
     component: int,
 ) -> None:
-    for verdict in verdicts:
-        (line,) = axes.semilogy(time, verdict.true[:, component], label=verdict.estimator)
-        claimed = verdict.claimed[:, component]
-        axes.semilogy(time, claimed, linestyle="--", color=line.get_color())
-    axes.set(xlabel="t [s]", title=title)
-    axes.grid(alpha=0.3)
+    axes.axhline(1.0, color=GREY, linewidth=0.6, linestyle=":")
+    axes.set_yscale("log")
+    for number, verdict in enumerate(verdicts):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = verdict.claimed[:, component] / verdict.true[:, component]
+        marked(axes, time, ratio, line(number), number, verdict.estimator)
+    axes.set(xlabel="t [s]", ylabel=f"σ of {name}: claimed / true")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from rich.table import Table
 
-from laglab.results.figure import empty_figure
+from laglab.results.figures import sheet
 from laglab.studies.trust import LOOKED_AT_AFTER, Fared
 
 if TYPE_CHECKING:
@@ -91,7 +91,7 @@ def draw_trust(of: Scores, stations: Sequence[str]) -> Figure:
     shares = np.array(
         [[of[c, s].converged / of[c, s].runs for s in stations] for c in conditions], dtype=float
     )
-    figure = empty_figure(3 + 1.4 * len(stations), 1.5 + 0.4 * len(conditions))
+    figure = sheet(3 + 1.4 * len(stations), 1.5 + 0.4 * len(conditions))
     axes = figure.subplots()
     axes.imshow(shares, cmap="cividis", vmin=0, vmax=1, aspect="auto")
     for (row, column), share in np.ndenumerate(shares):

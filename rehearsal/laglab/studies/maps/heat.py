@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.results.figure import empty_figure
+from laglab.results.figures import sheet
 from laglab.studies.maps.grid import Field, Sorted
 from laglab.studies.maps.labels import in_cell, key_label, panel_label, tick_labels
 from laglab.studies.maps.margin import Plane
@@ -67,7 +67,7 @@ def draw_maps(by: Layout, into: Sorted, maps: Sequence[Map], margins: Sequence[P
     width = min(max(len(into.x) * CELL[0], LEAST), MOST)
     height = min(max(len(into.y) * CELL[1], LEAST), MOST)
     written = width / len(into.x) > 0.9 * CELL[0] and height / len(into.y) > 0.9 * CELL[1]
-    figure = empty_figure(1.9 + (width + 0.15) * len(into.panels), 1.3 + (height + 0.4) * len(maps))
+    figure = sheet(1.9 + (width + 0.15) * len(into.panels), 1.3 + (height + 0.4) * len(maps))
     grid = figure.subplots(len(maps), len(into.panels), squeeze=False, sharex=True, sharey=True)
     for row, each in zip(grid, maps, strict=True):
         look = _look(each, written)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.results.figure import empty_figure
+from laglab.results.figures import sheet
 from laglab.scenario import Scenario
 from laglab.studies.maps.grid import Sorted
 from laglab.studies.maps.heat import WIDE, Map
@@ -28,7 +28,7 @@ STROKES = ("o-", "s--", "^-.", "v:", "D-", "P--")
 
 def draw_lines(by: Layout, into: Sorted, maps: Sequence[Map], base: Scenario | None) -> Figure:
     """A panel for each measure, one below the other."""
-    figure = empty_figure(7, 0.6 + 2.6 * len(maps))
+    figure = sheet(7, 0.6 + 2.6 * len(maps))
     panels = figure.subplots(len(maps), 1, squeeze=False, sharex=True)[:, 0]
     for axes, each in zip(panels, maps, strict=True):
         _draw(axes, by, into, each)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from laglab.interface import run
-from laglab.results.figure import empty_figure
+from laglab.results.figures import sheet
 from laglab.results.numbers import HEADING_BOUND, goal_errors, robot_pose
 from laglab.scenario import load
 from laglab.studies.reproduce.claim import Claim, Evidence
@@ -57,7 +57,7 @@ def late_commands() -> Evidence:
 
 
 def _swings(swing: list[float], margin: int) -> bytes:
-    figure = empty_figure(7, 3)
+    figure = sheet(7, 3)
     axes = figure.subplots()
     axes.semilogy(DELAYS, swing, "o-")
     axes.axvline(margin + 0.5, color="black", label="delay margin, computed")

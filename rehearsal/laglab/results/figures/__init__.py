@@ -1,0 +1,22 @@
+"""Figures for papers and screens: a run, several runs laid over each other, a moving picture."""
+
+from laglab.results.figures.overlaid import draw_runs
+from laglab.results.figures.saving import FIGURE_FILE, picture_place, save, save_figure
+from laglab.results.figures.style import INCHES, Width, legend, line, printed, sheet
+from laglab.results.figures.whole import draw_run, title
+
+__all__ = [
+    "FIGURE_FILE",
+    "INCHES",
+    "Width",
+    "draw_run",
+    "draw_runs",
+    "legend",
+    "line",
+    "picture_place",
+    "printed",
+    "save",
+    "save_figure",
+    "sheet",
+    "title",
+]

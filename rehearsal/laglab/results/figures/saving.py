@@ -1,0 +1,45 @@
+"""Figures as files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from laglab.errors import PlaceError
+from laglab.results.figures.style import printed, sheet
+from laglab.results.whole import whole_file
+from laglab.results.writable import file_place
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FIGURE_FILE = "figure.png"
+DOTS_PER_INCH = 220
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write the figure in the format that the name's ending says. Raises ResultsError."""
+    with printed(), whole_file(path) as file:
+        figure.savefig(file, format=_format(path), dpi=DOTS_PER_INCH)
+
+
+def picture_place(path: Path) -> Path:
+    """Where `--out` wants a picture: it can be drawn there. Raises PlaceError."""
+    known = sheet(1, 1).canvas.get_supported_filetypes()
+    if _format(path) not in known:
+        raise PlaceError(f"--out {path}: its name must end in one of {', '.join(known)}")
+    return file_place("--out", path)
+
+
+def _format(path: Path) -> str:
+    return path.suffix[1:].lower()
+
+
+def save_figure(draw_it: Callable[[], Figure], directory: Path) -> bool:
+    """Draw a run's figure beside its other results; False where there is no matplotlib."""
+    if find_spec("matplotlib") is None:
+        return False
+    save(draw_it(), directory / FIGURE_FILE)
+    return True

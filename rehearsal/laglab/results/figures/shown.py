@@ -1,0 +1,119 @@
+"""What a figure shows of a run."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from laglab.results.link_view import LinkView, link_view
+from laglab.results.numbers import (
+    deviation,
+    is_measured,
+    loop_estimates,
+    measurements,
+    robot_pose,
+    shadow_estimates,
+)
+from laglab.scenario import Scenario
+from laglab_gateway import CLAIMS_FILE, Trace
+
+if TYPE_CHECKING:
+    from laglab.results.run import Run
+
+Array = NDArray[np.float64]
+
+MINUTES, HOURS = 600.0, 3 * 3600.0
+"""[s] Runs that last longer are told in these."""
+
+
+class Clock(NamedTuple):
+    """A unit of time that suits a run's length."""
+
+    seconds: float
+    unit: str
+
+    @property
+    def label(self) -> str:
+        """Of a time axis."""
+        return f"t [{self.unit}]"
+
+
+def clock(duration: float) -> Clock:
+    """For a run that lasts so long [s]."""
+    if duration > HOURS:
+        return Clock(3600.0, "h")
+    return Clock(60.0, "min") if duration > MINUTES else Clock(1.0, "s")
+
+
+class Shown(NamedTuple):
+    """Time in the clock's unit; all else in SI units, as much of it as can be seen."""
+
+    scenario: Scenario
+    clock: Clock
+    trace: Trace
+    time: Array
+    """(ticks,)"""
+    claimed_time: Array
+    """(claims,)"""
+    claimed: Array
+    """(claims, 3): the standard deviations that the station claims."""
+    link: LinkView
+
+    @property
+    def pose(self) -> Array:
+        """(ticks, 3), true, or measured where the true one is not known."""
+        return robot_pose(self.trace)
+
+    @property
+    def measured(self) -> Array:
+        """(ticks, 3)"""
+        return measurements(self.trace)
+
+    @property
+    def estimate(self) -> Array:
+        """(ticks, 3), of the estimator in the loop."""
+        return loop_estimates(self.trace)
+
+    @property
+    def error(self) -> Array:
+        """(ticks, 3): estimate less pose."""
+        return deviation(self.trace, self.estimate)
+
+    def shadow_error(self, name: str) -> Array:
+        """(ticks, 3): the same of an estimator that shadowed the loop."""
+        return deviation(self.trace, shadow_estimates(self.trace, name))
+
+    @property
+    def is_estimated(self) -> bool:
+        """Whether there is an estimate at all."""
+        return not np.isnan(self.estimate).all()
+
+    @property
+    def is_measured(self) -> bool:
+        """Whether the true pose is not known."""
+        return is_measured(self.trace)
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """The first time and the last; never the same."""
+        start, end = float(self.time[0]), float(self.time[-1])
+        return start, end if end > start else start + self.scenario.sample_time
+
+
+def shown(run: Run) -> Shown:
+    """All that is drawn of it. Raises ResultsError, TraceError."""
+    trace = run.drawn
+    unit = clock(float(trace["time"][-1]))
+    claims = run.drawn_table(CLAIMS_FILE)
+    variances = np.stack([claims[name].astype(float) for name in ("p_xx", "p_yy", "p_tt")], axis=1)
+    return Shown(
+        run.scenario,
+        unit,
+        trace,
+        trace["time"] / unit.seconds,
+        claims["time"].astype(float) / unit.seconds,
+        np.sqrt(np.maximum(variances, 0.0)),
+        link_view(run),
+    )
