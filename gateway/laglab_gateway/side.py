@@ -163,8 +163,10 @@ class RobotSide(ABC):
                 self._take_answer(message)
             case Command() if self._answered_through < message.tick < self.tick:
                 self._push(message)
-            case Command() | Estimate():
-                pass  # said again, or of a tick that has not come
+            case Command():  # said again, or of a tick that has not come, as was asked before it
+                self._recalls.clear()
+            case Estimate():
+                pass
             case Statustext():
                 if not self.answered:  # said again with a repeated answer, it is told once
                     self.announce(message.text.decode(errors="replace"))
@@ -188,6 +190,8 @@ class RobotSide(ABC):
 
     def _take_answer(self, command: Command) -> None:
         if len(self._estimates) + len(self._recalls) < command.estimates:
+            self._estimates.clear()
+            self._recalls.clear()
             return  # a frame of this answer was lost: the repeat will bring it whole
         self._command = command
         self._push(command)

@@ -36,11 +36,12 @@ def test_every_way_is_timed_with_both_filters(
         main(["bench", "study", *few, "--json", str(written)])
     assert ended.value.code == 0
     report = msgspec.json.decode(written.read_bytes(), type=Report)
-    (result,) = report.results
+    result, by_two = report.results
+    assert [t.name for t in by_two.timings] == ["1", "2"]
     ways = {bench.AT_ONCE, bench.GUARDED, bench.ALONE, bench.PLAIN}
     for kind, more in (("delayed-ekf", {bench.BY_HAND}), ("popf", set())):
         assert {t.name for t in result.timings if t.case == f"{kind} 10/20"} == ways | more
-    assert len(report.figures) == 6
+    assert len(report.figures) == 7
     page = capsys.readouterr().out
     assert max(map(len, page.splitlines())) <= 80
     assert "…" not in page

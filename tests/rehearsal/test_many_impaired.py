@@ -8,6 +8,7 @@ import pytest
 
 import laglab
 from laglab.results.numbers import has_converged
+from laglab.runs.inline import InlineLink
 from laglab.scenario import load
 from laglab.studies.many import Many, run_many, why_one_by_one
 from laglab.studies.schedule import schedule_of
@@ -101,6 +102,22 @@ def test_the_verdicts_are_the_same(link, kind):
         verdicts.append(has_converged({**run.trace, **ends}, scenario.goal))
         assert verdicts[-1] == run.summary.converged
     assert verdicts == [True, False]
+
+
+def test_answers_that_come_again_change_nothing(monkeypatch):
+    """What they ask the robot to recall goes over the link once."""
+    scenario = station("delayed-ekf", "losses and jitter", duration=2.0)
+    said_once, send = laglab.run(scenario), InlineLink.send
+
+    def twice(link, data, to=None):
+        there = len(link._inbox)
+        send(link, data, to)
+        link._inbox += link._inbox[there:]
+
+    monkeypatch.setattr(InlineLink, "send", twice)
+    said_twice = laglab.run(scenario)
+    assert said_twice.link["tick"].tolist() == said_once.link["tick"].tolist()
+    assert furthest(run_many([scenario]), 0, said_twice) < SHARP
 
 
 def test_they_diverge_at_the_same_tick():

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from contextlib import ExitStack
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,12 +15,15 @@ from laglab.interface import run
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario, load
 from laglab.studies.many import run_many
+from laglab.studies.workers import Processes
 
 AT_ONCE, ALONE, BY_HAND = "at once", "one by one", "numpy by hand"
 GUARDED = "at once, guarded"
 KINDS = ("delayed-ekf", "popf")
 FEW = 2
 """Robots that a turn runs one by one."""
+SHARES = 4
+"""Of a turn that is shared out among processes."""
 DELAYS = ((10, 20), (100, 20), (10, 200))
 """n and m: the first is the paper's, the others tell how the cost grows."""
 
@@ -37,7 +41,9 @@ def bench(robots: int, ticks: int, stack: ExitStack) -> Bench:
         for n, m in DELAYS
     }
     contest = Contest("a robot's tick in a study", microseconds("robot-tick"), PLAIN, cases)
-    return Bench("study", [contest], _figures)
+    shared = {"": {str(each): _shared_out(each, robots, ticks, stack) for each in (1, 2)}}
+    by_two = Contest("the same, by so many processes", microseconds("robot-tick"), "1", shared)
+    return Bench("study", [contest, by_two], _figures)
 
 
 def _ways(kind: str, delays: tuple[int, int], robots: int, ticks: int) -> dict[str, Turn]:
@@ -69,6 +75,30 @@ def _scenarios(kind: str, delays: tuple[int, int], robots: int, ticks: int) -> l
     ]
 
 
+class Share(NamedTuple):
+    """What one process is to do."""
+
+    robots: int
+    ticks: int
+
+
+def _shared_out(processes: int, robots: int, ticks: int, stack: ExitStack) -> Turn:
+    workers = stack.enter_context(Processes(processes))
+    shares = [Share(max(1, robots // SHARES), ticks)] * SHARES
+
+    def work() -> None:
+        for future in [workers.submit(at_once, share) for share in shares]:
+            future.result()
+
+    work()  # so that every process is there, and has loaded what it needs
+    return timed(work, SHARES * shares[0].robots * ticks)
+
+
+def at_once(share: Share) -> None:
+    """In a process."""
+    run_many(_scenarios(KINDS[0], DELAYS[0], *share))
+
+
 def _one_by_one(scenarios: Sequence[Scenario]) -> None:
     for scenario in scenarios:
         run(scenario)
@@ -84,8 +114,10 @@ def _by_hand(scenarios: Sequence[Scenario], ticks: int) -> None:
 
 
 def _figures(results: Sequence[Result], _: Progress) -> list[Figure]:
-    (result,) = results
-    figures = []
+    result, by_two = results
+    figures = [
+        Figure("two processes to one", by_two.fastest("", "1") / by_two.fastest("", "2"), "×")
+    ]
     for kind in KINDS:
         paper, *others = (f"{kind} {n}/{m}" for n, m in DELAYS)
         ours = result.fastest(paper, AT_ONCE)
