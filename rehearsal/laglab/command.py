@@ -8,6 +8,7 @@ import typer
 
 from laglab import __version__
 from laglab.commands import (
+    animate,
     bench,
     compare,
     consistency,
@@ -61,6 +62,7 @@ app.command("estimators")(estimators.estimators)
 app.command("scenario")(scenario.scenario)
 app.command("figure")(figure.figure)
 app.command("compare")(compare.compare)
+app.command("animate")(animate.animate)
 app.command("consistency")(consistency.consistency)
 app.command("trust")(trust.trust)
 app.command("errata")(errata.errata)
