@@ -11,6 +11,7 @@ from rich.table import Table
 
 from laglab.results.figures import sheet
 from laglab.studies.trust import LOOKED_AT_AFTER, Fared
+from laglab.tables import plain_table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -63,13 +64,11 @@ def _score(ones: Sequence[Fared]) -> Score:
 def trust_table(of: Scores, stations: Sequence[str], seeds: int) -> Table:
     """Of each condition how many runs converged, a column a station; and of the first station the
     error, the NEES and the alarms."""
-    table = Table(
+    table = plain_table(
         title=f"converged, of {seeds} runs each",
         caption=f"of {stations[0]}: root mean square error of the position \\[m];\n"
         "NEES (3 if its claims are true); runs with an alarm; of these, how many\n"
         f"were within {FOUND:g} m of the robot {LOOKED_AT_AFTER:g} s later",
-        box=None,
-        padding=(0, 1, 0, 0),
     )
     table.add_column("", no_wrap=True)
     for name in (*stations, "RMS", "NEES", "alarm", "found"):
