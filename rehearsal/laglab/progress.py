@@ -56,7 +56,7 @@ def at_a_glance(scenario: Scenario, tick: int, glance: Glance, width: int) -> st
         (0, "ρ ?" if glance.rho is None else f"ρ {glance.rho:.3g} m"),
         (3, "" if glance.sigma is None else f"σ {glance.sigma:.2g} m"),
         (2, f"delays {delays}"),
-        (2, f"lost {glance.lost}"),
+        (2, "" if glance.lost is None else f"lost {glance.lost}"),
         (0, glance.state),
     ]
     for least in (3, 2, 1, 0):

@@ -1,6 +1,7 @@
 """What the command shows on a terminal, wide or narrow, and what it does not say elsewhere."""
 
 import fcntl
+import math
 import os
 import pty
 import re
@@ -13,10 +14,13 @@ from typing import NamedTuple
 
 import pytest
 
+import laglab
 from laglab.progress import at_a_glance
+from laglab.results.station_glance import StationGlance
 from laglab.runs.glance import Glance, Glances
 from laglab.scenario import load
 from laglab_gateway import ArrivalRow, ClaimRow, LinkRow, TraceRow
+from laglab_protocol import read_tlog
 
 RUN = ("run", "lab-radio", "--transport", "inline", "--out", "run")
 LOCKSTEP = (*RUN, "--duration", "2")
@@ -129,3 +133,19 @@ def test_a_glance_is_what_was_recorded_last() -> None:
     glances.arrivals([ArrivalRow("command", 0, 50, 0.5, "stale")])
     glances.row(row._replace(time=0.6))
     assert glances.now().state == "stopped"
+
+
+def test_a_station_alone_tells_what_it_knows(tmp_path: Path) -> None:
+    scenario = load("lab", {"duration": 1.0})
+    run = laglab.run(scenario, out=tmp_path / "run")
+    glance = StationGlance(scenario)
+    assert glance.now() is None
+    for _, frame in read_tlog(tmp_path / "run" / "robot.tlog"):
+        glance.said([frame.raw])
+    last = {name: column[-1] for name, column in run.trace.items()}
+    told = glance.now()
+    assert told is not None
+    assert told.rho == pytest.approx(math.hypot(last["x_est"], last["y_est"]))
+    claimed = run.claims["p_xx"][-1] + run.claims["p_yy"][-1]
+    assert told.sigma == pytest.approx(math.sqrt(claimed))
+    assert (told.delays, told.lost, told.state) == ((10, 20), None, "drives")

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -14,10 +15,11 @@ from laglab.extras import STEPPING, require
 from laglab.progress import progress_of
 from laglab.results.complete import Way
 from laglab.results.place import place
+from laglab.results.station_glance import StationGlance
 from laglab.results.station_record import StationRecord
 from laglab.runs.alone import answer_alone, serve_alone
 from laglab.runs.clock import LoopClock
-from laglab.runs.glance import watched
+from laglab.runs.glance import Told, watched
 from laglab.runs.robot_side import Setup, open_robot
 from laglab.runs.station_side import open_station
 from laglab.scenario import Scenario
@@ -124,8 +126,14 @@ def controller(
         directory = place(scenario, out, force, suffix="-station")
         _say_whom_we_wait_for("the robot", link)
         with progress_of(scenario) as told:
-            progress = LoopClock(lambda tick: told(tick, None))
-            record = StationRecord(directory, scenario.sample_time, _warn, progress)
+            record = _station_record(scenario, directory, told)
             listener = Listener(link, receiver)
             ending = answer_alone(station, listener, scenario.silence_timeout, record)
     conclude(scenario, Way("station", link.name, "unknown"), ending, directory)
+
+
+def _station_record(scenario: Scenario, directory: Path, told: Told) -> StationRecord:
+    """Tells how the run is now and then, where it goes by the clock."""
+    glance = StationGlance(scenario) if scenario.pace == "realtime" else None
+    progress = LoopClock(lambda tick: told(tick, glance.now() if glance else None))
+    return StationRecord(directory, scenario.sample_time, _warn, progress, glance)

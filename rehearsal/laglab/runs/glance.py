@@ -21,12 +21,12 @@ class Glance(Struct, frozen=True):
     """What is known at a tick; None where nothing is."""
 
     rho: float | None
-    """Distance to the goal, as measured where the pose is not known [m]."""
+    """Distance to the goal [m], as measured, or else as estimated, where the pose is not known."""
     sigma: float | None
     """Standard deviation that the station claims of the position [m]."""
     delays: tuple[int | None, int | None]
     """Of the last command and of the last measurement that came [ticks]."""
-    lost: int
+    lost: int | None
     """Messages, both ways, so far."""
     state: str
     """What the robot does: `waits` for its first command, `drives`, has `stopped` by itself."""
@@ -74,7 +74,7 @@ class Glances(Recorder):
     def link(self, rows: Iterable[LinkRow]) -> None:
         self._lost += sum(row.fate != "delivered" for row in rows)
 
-    def now(self) -> Glance | None:
+    def now(self, knows_losses: bool = True) -> Glance | None:
         """At the last tick; None before the first."""
         if self._row is None:
             return None
@@ -82,12 +82,12 @@ class Glances(Recorder):
             self._rho(self._row),
             math.sqrt(max(0.0, self._claim.p_xx + self._claim.p_yy)) if self._claim else None,
             (self._delays.get("command"), self._delays.get("measurement")),
-            self._lost,
+            self._lost if knows_losses else None,
             self._state(self._row.time),
         )
 
     def _rho(self, row: TraceRow) -> float | None:
-        for x, y in ((row.x, row.y), (row.x_meas, row.y_meas)):
+        for x, y in ((row.x, row.y), (row.x_meas, row.y_meas), (row.x_est, row.y_est)):
             if x is not None and y is not None:
                 return math.hypot(x - self._x, y - self._y)
         return None
