@@ -8,6 +8,7 @@ import typer
 
 from laglab import __version__
 from laglab.commands import (
+    animate,
     bench,
     compare,
     consistency,
@@ -67,6 +68,7 @@ app.command("scenario")(scenario.scenario)
 app.command("figure")(figure.figure)
 app.command("compare")(compare.compare)
 app.command("export")(export.export)
+app.command("animate")(animate.animate)
 app.command("consistency")(consistency.consistency)
 app.command("trust")(trust.trust)
 app.command("soak")(soak.soak)

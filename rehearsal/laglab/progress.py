@@ -14,25 +14,59 @@ from rich.progress import (
     MofNCompleteColumn,
     Progress,
     ProgressColumn,
+    Task,
     TaskProgressColumn,
     TextColumn,
     TimeElapsedColumn,
     TimeRemainingColumn,
 )
+from rich.text import Text
 
+from laglab.runs.glance import Glance, Told
 from laglab.scenario import Scenario
 
 T = TypeVar("T")
 PACE_WINDOW = 300.0
 """[s] A study's cells may take minutes each."""
 
+ROOMY, NARROW = 72, 44
+"""[columns] Narrower terminals are told less."""
+
 
 @contextmanager
-def progress_of(scenario: Scenario, shown: bool = True) -> Iterator[Callable[[int], None]]:
-    """Shows the ticks that it is told of, if `shown`."""
+def progress_of(scenario: Scenario, shown: bool = True) -> Iterator[Told]:
+    """Shows the ticks that it is told of, if `shown`; of a run by the clock how it is."""
     with _bar("tick", shown) as bar:
-        task = bar.add_task(scenario.name, total=scenario.last_tick)
-        yield lambda tick: bar.update(task, completed=tick, refresh=True)
+        task = bar.add_task(scenario.name, total=scenario.last_tick, glance="")
+
+        def told(tick: int, glance: Glance | None = None) -> None:
+            if glance is not None:
+                bar.columns = (TextColumn("{task.fields[glance]}", markup=False),)
+                line = at_a_glance(scenario, tick, glance, bar.console.width)
+                bar.update(task, glance=line)
+            bar.update(task, completed=tick, refresh=True)
+
+        yield told
+
+
+def at_a_glance(scenario: Scenario, tick: int, glance: Glance, width: int) -> str:
+    """In one line of so many columns: what matters less is left out first."""
+    of = "" if scenario.last_tick is None else f" of {scenario.duration:g}"
+    delays = ", ".join("?" if each is None else str(each) for each in glance.delays)
+    parts = [
+        (0, scenario.name),
+        (1, f"{tick * scenario.sample_time:.1f}{of} s"),
+        (0, "ρ ?" if glance.rho is None else f"ρ {glance.rho:.3g} m"),
+        (3, "" if glance.sigma is None else f"σ {glance.sigma:.2g} m"),
+        (2, f"delays {delays}"),
+        (2, "" if glance.lost is None else f"lost {glance.lost}"),
+        (0, glance.state),
+    ]
+    for least in (3, 2, 1, 0):
+        line = "  ".join(text for weight, text in parts if text and weight <= least)
+        if len(line) < width:
+            return line
+    return line[: width - 1]
 
 
 def tracked(work: Iterable[T], total: int, title: str, unit: str) -> Iterator[T]:
@@ -83,15 +117,45 @@ def status() -> Iterator[Callable[[str], None]]:
         yield lambda text: line.update(task, description=text, refresh=True)
 
 
+class Rate(ProgressColumn):
+    """How much a second."""
+
+    def __init__(self, unit: str) -> None:
+        super().__init__()
+        self._unit = unit
+
+    def render(self, task: Task) -> Text:
+        speed = task.finished_speed or task.speed
+        if speed is None:
+            return Text()
+        digits = f"{speed:.0f}" if speed >= 100 else f"{speed:.2g}"
+        return Text(f"{digits} {self._unit}/s")
+
+
+class ToGo(TimeRemainingColumn):
+    """How long it will take still."""
+
+    def render(self, task: Task) -> Text:
+        left = super().render(task)
+        return Text("") if task.total is None or task.finished else left + Text(" to go")
+
+
 def _bar(unit: str, shown: bool = True) -> Progress:
-    """So many done of so many to do, if that is known."""
+    """So many done of so many to do, if that is known; how fast, and how long it takes still."""
+    name, done = TextColumn("{task.description}", markup=False), MofNCompleteColumn()
+    share = TaskProgressColumn(text_format_no_percentage="")
+    width = Console(stderr=True).width
+    if width < NARROW:
+        return _shown(name, share, shown=shown)
+    if width < ROOMY:
+        return _shown(name, share, done, ToGo(compact=True), shown=shown)
     return _shown(
-        TextColumn("{task.description}", markup=False),
-        BarColumn(),
-        TaskProgressColumn(text_format_no_percentage=""),
-        TextColumn(unit),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
+        name,
+        BarColumn(16),
+        share,
+        done,
+        Rate(unit),
+        ToGo(compact=True),
         shown=shown,
     )
 

@@ -178,7 +178,7 @@ def kill_children(side: str) -> None:
 @pytest.mark.parametrize("victim", ["gateway", "controller"])
 @pytest.mark.parametrize("transport", ["udp", "serial"])
 def test_a_run_whose_side_is_killed_says_which(victim: str, transport: Any, tmp_path: Path) -> None:
-    def kill(tick: int) -> None:
+    def kill(tick: int, _: object) -> None:
         if tick > 20:
             kill_children(victim)
 
@@ -210,7 +210,7 @@ def test_files_are_whole_whenever_a_side_is_killed(
 
         killer = threading.Thread(target=kill)
 
-        def started(_: int, killer: threading.Thread = killer) -> None:
+        def started(_: int, __: object, killer: threading.Thread = killer) -> None:
             if killer.ident is None:
                 killer.start()
 

@@ -202,6 +202,7 @@ def test_a_long_run_shows_its_rarest_delay_and_loss(monkeypatch: pytest.MonkeyPa
     assert len(seen.time) < len(whole.directions["measurement"].time) / 4
     assert (seen.delay.min(), seen.delay.max()) == (measured.min, measured.max)
     assert len(thinned.directions["command"].lost["lost"]) >= 1
+    assert thinned.directions["command"].counts["lost"] == run.summary.link.command.lost["lost"]
     run.figure()
 
 

@@ -7,6 +7,7 @@ from rich.console import Console
 from rich.table import Table
 
 from laglab.bench.result import Figure, Report, Result
+from laglab.tables import plain_table
 
 WIDTH = 80
 
@@ -22,7 +23,7 @@ def show(report: Report, console: Console) -> None:
 
 def _contest(result: Result) -> Table:
     """A row for each contender; a case is named where it begins."""
-    table = Table("", "", title=result.title, box=None)
+    table = plain_table("", "", title=result.title)
     for heading in (result.timings[0].unit, "in the median", f"× {result.yardstick}"):
         table.add_column(heading, justify="right", no_wrap=True)
     named = ""
@@ -35,7 +36,7 @@ def _contest(result: Result) -> Table:
 
 
 def _figures(figures: Sequence[Figure]) -> Table:
-    table = Table("", "", "", title="besides", box=None, show_header=False)
+    table = plain_table("", "", "", title="besides", headed=False)
     table.columns[1].justify = "right"
     for figure in figures:
         table.add_row(figure.name, significant(figure.value), figure.unit)

@@ -1,14 +1,14 @@
 """``laglab scenarios``."""
 
 from rich.console import Console
-from rich.table import Table
 
 from laglab.scenario import shipped
+from laglab.tables import plain_table
 
 
 def scenarios() -> None:
     """List the scenarios that come with laglab."""
-    table = Table("name", "estimator", "n", "m", "noise", "what it shows", box=None)
+    table = plain_table("name", "estimator", "n", "m", "noise", "what it shows")
     for name, scenario in shipped().items():
         table.add_row(
             name,

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -14,8 +15,11 @@ from laglab.extras import STEPPING, require
 from laglab.progress import progress_of
 from laglab.results.complete import Way
 from laglab.results.place import place
+from laglab.results.station_glance import StationGlance
 from laglab.results.station_record import StationRecord
 from laglab.runs.alone import answer_alone, serve_alone
+from laglab.runs.clock import LoopClock
+from laglab.runs.glance import Told, watched
 from laglab.runs.robot_side import Setup, open_robot
 from laglab.runs.station_side import open_station
 from laglab.scenario import Scenario
@@ -79,21 +83,22 @@ def gateway(
     with (
         open_robot(scenario, Setup(plant, key, not disarmed, unsigned, plant_key)) as robot,
         open_endpoint(endpoint) as link,
-        _opened(watch or []) as watched,
+        _opened(watch or []) as watchers,
     ):
-        for each in (link, *watched):
+        for each in (link, *watchers):
             refuse_open_door(each, key, unsigned)
         directory = place(scenario, out, force)
         _say_whom_we_wait_for("the controller", link)
-        for each in watched:
+        for each in watchers:
             _say(f"a ground station may look on at {each.name}")
         with progress_of(scenario) as told:
+            recorder, now = watched(FileRecorder(directory), scenario, plant)
             around = Surroundings(
                 Listener(link, robot.codec.receiver),
-                FileRecorder(directory),
+                recorder,
                 Patience(silence=scenario.silence_timeout),
-                robot.watch(watched),
-                told,
+                robot.watch(watchers),
+                lambda tick: told(tick, now()),
                 _warn,
             )
             ending = serve_alone(robot, around)
@@ -122,7 +127,14 @@ def controller(
         directory = place(scenario, out, force, suffix="-station")
         _say_whom_we_wait_for("the robot", link)
         with progress_of(scenario) as told:
-            record = StationRecord(directory, scenario.sample_time, _warn, told)
+            record = _station_record(scenario, directory, told)
             listener = Listener(link, receiver)
             ending = answer_alone(station, listener, scenario.silence_timeout, record)
     conclude(scenario, Way("station", link.name, "unknown"), ending, directory)
+
+
+def _station_record(scenario: Scenario, directory: Path, told: Told) -> StationRecord:
+    """Tells how the run is now and then, where it goes by the clock."""
+    glance = StationGlance(scenario) if scenario.pace == "realtime" else None
+    progress = LoopClock(lambda tick: told(tick, glance.now() if glance else None))
+    return StationRecord(directory, scenario.sample_time, _warn, progress, glance)

@@ -15,10 +15,14 @@ class HeardTick(NamedTuple):
     claims: list[ClaimRow]
 
 
-def heard_ticks(session: Iterable[SessionTick], sample_time: float) -> Iterator[HeardTick]:
+def heard_ticks(
+    session: Iterable[SessionTick], sample_time: float, first: int | None = None
+) -> Iterator[HeardTick]:
     """Each tick with the measurements that came with it; with the commands that the robot says, for
-    the first time, were in force; and with what the station claimed."""
-    first: int | None = None
+    the first time, were in force; and with what the station claimed.
+
+    `first` is the run's first tick; the session's first, if it is not given.
+    """
     in_force, last = -1, -1
     for heard in session:
         first = heard.tick if first is None else first

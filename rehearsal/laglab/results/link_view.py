@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
@@ -40,6 +41,8 @@ class DirectionView:
     """How long after its stamp [ticks]; of a long run each stretch's shortest and longest."""
     lost: dict[str, Array] = field(default_factory=dict)
     """By cause when something went into the link and was lost, or came and was refused [s]."""
+    counts: dict[str, int] = field(default_factory=dict)
+    """By cause how many, drawn or not."""
     outages: list[Span] = field(default_factory=list)
     """When nothing that went in got through."""
 
@@ -79,6 +82,7 @@ def link_view(run: Run) -> LinkView:
     for name, view in views.items():
         view.time, view.delay = came.delays(name)
         view.lost = went.lost(name) | came.refused(name)
+        view.counts = went.counts[name] | (came.counts if name == "command" else {})
         view.outages = went.outages(name)
     stopped = [Span(at, min(until, end)) for at, until in came.stops.items()]
     emergencies = times(link.emergency_ticks if link else ())
@@ -92,6 +96,8 @@ class _Arrivals:
         self._stride = stride
         self._came: dict[str, list[Array]] = {name: [] for name in DIRECTIONS}
         self._refused: dict[str, list[Array]] = {}
+        self.counts = Counter[str]()
+        """Commands refused, by why."""
         self.stops = dict.fromkeys(stops, np.inf)
         """When the robot stopped, and when it went on."""
 
@@ -104,7 +110,8 @@ class _Arrivals:
             table = np.stack([time, came - stamp])
             kept.append(_extremes(table, self._stride))
         time, refused = piece["time"].astype(float), piece["refused"]
-        for why in set(refused.tolist()) - {FOLLOWED}:
+        self.counts.update(why for why in refused.tolist() if why != FOLLOWED)
+        for why in set(self.counts) & set(refused.tolist()):
             self._refused.setdefault(why, []).append(time[refused == why][:: self._stride])
         followed = time[(piece["direction"] == "command") & (refused == FOLLOWED)]
         for at, until in self.stops.items():
@@ -129,6 +136,8 @@ class _Losses:
         self._stride = stride
         self._sample_time = sample_time
         self._lost: dict[tuple[str, str], list[Array]] = {}
+        self.counts = {name: Counter[str]() for name in DIRECTIONS}
+        """Frames lost, by cause."""
         self._silences = {name: _Silences(sample_time) for name in DIRECTIONS}
 
     def add(self, piece: Columns) -> None:
@@ -136,7 +145,8 @@ class _Losses:
             rows = piece["direction"] == name
             ticks, fates = piece["tick"][rows].astype(float), piece["fate"][rows]
             self._silences[name].add(ticks, fates != DELIVERED, fates == OUTAGE)
-            for cause in set(fates.tolist()) - {DELIVERED}:
+            self.counts[name].update(fate for fate in fates.tolist() if fate != DELIVERED)
+            for cause in set(self.counts[name]) & set(fates.tolist()):
                 times = ticks[fates == cause][:: self._stride] * self._sample_time
                 self._lost.setdefault((name, cause), []).append(times)
 

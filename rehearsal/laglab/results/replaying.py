@@ -21,6 +21,7 @@ from laglab.results.figures.panels import (
 from laglab.results.numbers import deviation, robot_pose
 from laglab.results.shadows import Shadow
 from laglab.scenario import Scenario
+from laglab.tables import plain_table
 from laglab_gateway import Trace
 from laglab_protocol import Measurement
 from laglab_station import SessionTick
@@ -56,7 +57,7 @@ def rms_deviation(replayed: Shadow, trace: Trace) -> list[float]:
 
 def replays_table(replays: Replays, trace: Trace | None) -> Table:
     """One line a filter: its last estimate; where the true poses are known, its RMS deviation."""
-    table = Table(box=None, pad_edge=False)
+    table = plain_table()
     headings = ["filter", "ticks", "x, y, θ at the end"]
     for heading in headings + (["RMS deviation in x, y, θ"] if trace else []):
         table.add_column(heading)

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
 from laglab.results.heard import heard_ticks
+from laglab.results.station_glance import StationGlance
 from laglab_gateway import TLOG_FILE, FileRecorder, TraceRow
 from laglab_station import Onlooker, SessionTick, read_session
 
@@ -22,17 +23,21 @@ class StationRecord(Onlooker):
         sample_time: float,
         warn: Callable[[str], None],
         progress: Callable[[int], None],
+        glance: StationGlance | None = None,
     ) -> None:
         self._directory = directory
         self._sample_time = sample_time
         self._recorder = FileRecorder(directory)
         self._warn = warn
         self._progress = progress
+        self._glance = glance
 
     def warned(self, text: str) -> None:
         self._warn(text)
 
     def said(self, frames: Sequence[bytes], tick: int | None) -> None:
+        if self._glance:
+            self._glance.said(frames)
         self._recorder.frames(round((tick or 0) * self._sample_time * 1e6), frames)
 
     def answered(self, tick: int) -> None:

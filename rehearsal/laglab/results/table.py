@@ -3,6 +3,7 @@
 from rich.table import Table
 
 from laglab.results.summary import Errors, Summary
+from laglab.tables import plain_table
 from laglab_gateway import DirectionReport, LinkReport, TimingReport
 from laglab_station import StationReport
 
@@ -12,7 +13,7 @@ SHOWN = 5
 
 def results_table(summary: Summary) -> Table:
     """Name and value, a row each."""
-    table = Table(box=None, show_header=False)
+    table = plain_table(headed=False)
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold")
     for name, value in _rows(summary).items():

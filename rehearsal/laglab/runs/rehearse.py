@@ -13,6 +13,7 @@ from laglab.runs.child import LOOK_UP, Child, Inbox, Letter, started
 from laglab.runs.clock import LoopClock
 from laglab.runs.ending import Ending
 from laglab.runs.errors import LINK_LOST, SIDE_ERRORS
+from laglab.runs.glance import Told, watched
 from laglab.runs.inline import InlineLink
 from laglab.runs.pauses import short_pauses
 from laglab.runs.reports import (
@@ -41,20 +42,21 @@ GOODBYE_SECONDS = 0.5
 """What a station needs for its last words when a gateway has ended in order."""
 
 
-def unheard(_: object) -> None:
+def unheard(_: object, __: object) -> None:
     """Nobody asked."""
 
 
 def rehearse_inline(
     scenario: Scenario,
     recorder: Recorder,
-    progress: Callable[[int], None] = unheard,
+    progress: Told = unheard,
     setup: Setup | None = None,
     controller: MakeController = Controller,
 ) -> Ending:
     """Both sides in this process: the same bytes, with nothing between them."""
     setup = setup or Setup()
-    clock = LoopClock(progress)
+    recorder, now = watched(recorder, scenario, setup.plant)
+    clock = LoopClock(lambda tick: progress(tick, now()))
     warnings: list[str] = []
     try:
         with (
@@ -85,7 +87,7 @@ def rehearse_apart(
     scenario: Scenario,
     transport: Transport,
     directory: Path,
-    progress: Callable[[int], None] = unheard,
+    progress: Told = unheard,
     setup: Setup | None = None,
 ) -> Ending:
     """Each side in a process of its own; the robot's leaves its record in `directory`.
@@ -125,7 +127,7 @@ class _Rehearsal:
         inbox: Inbox,
         scenario: Scenario,
         key: str | None,
-        progress: Callable[[int], None],
+        progress: Told,
     ) -> None:
         self._gateway = gateway
         self._inbox = inbox
@@ -181,9 +183,9 @@ class _Rehearsal:
     def _take_of_gateway(self, report: object) -> None:
         ending = self._ending
         match report:
-            case Progress(tick, seconds):
+            case Progress(tick, seconds, glance):
                 self._ending = replace(ending, begun=True, loop_seconds=seconds)
-                self._progress(tick)
+                self._progress(tick, glance)
             case Warned(text):
                 self._ending = replace(ending, warnings=(*ending.warnings, text))
             case Finished(reason, tick, seconds, link, timing):

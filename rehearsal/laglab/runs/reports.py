@@ -4,6 +4,7 @@ from typing import Annotated
 
 from msgspec import Meta, Struct
 
+from laglab.runs.glance import Glance
 from laglab_gateway import LinkReport, TimingReport
 from laglab_station import StationReport
 
@@ -32,6 +33,7 @@ class Progress(Struct, frozen=True, tag=True):
 
     tick: int
     loop_seconds: Annotated[float, Meta(ge=0)]
+    glance: Glance | None = None
 
 
 class Warned(Struct, frozen=True, tag=True):

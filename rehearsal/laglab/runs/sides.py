@@ -6,6 +6,7 @@ from pathlib import Path
 from laglab.runs.child import Tell
 from laglab.runs.clock import LoopClock
 from laglab.runs.errors import LINK_LOST, SIDE_ERRORS
+from laglab.runs.glance import watched
 from laglab.runs.pauses import short_pauses
 from laglab.runs.reports import (
     Answered,
@@ -30,17 +31,18 @@ CONNECT = 30.0
 def robot_side(order: Order, tell: Tell) -> None:
     """The robot's side, from opening the endpoint to the last report."""
     scenario = Scenario.from_toml(order.scenario)
-    clock = LoopClock(lambda tick: tell(Progress(tick, clock.seconds)))
     begun = False
     try:
         with (
             open_robot(scenario, _setup(order)) as robot,
-            closing(FileRecorder(Path(order.directory))) as recorder,
+            closing(FileRecorder(Path(order.directory))) as files,
             open_endpoint(order.url) as endpoint,
             short_pauses(),
         ):
             tell(Listening(endpoint.name))
             begun = True
+            recorder, now = watched(files, scenario, order.plant)
+            clock = LoopClock(lambda tick: tell(Progress(tick, clock.seconds, now())))
             served = robot.serve(
                 Surroundings(
                     Listener(endpoint, robot.codec.receiver),

@@ -1,10 +1,10 @@
 """A whole run, both sides, its record in a folder."""
 
-from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
 
 from laglab.runs.ending import Ending
+from laglab.runs.glance import Told
 from laglab.runs.rehearse import Transport, rehearse_apart, rehearse_inline
 from laglab.runs.robot_side import Setup
 from laglab.scenario import Scenario
@@ -15,13 +15,13 @@ def run_into(
     directory: Path,
     scenario: Scenario,
     transport: Transport,
-    told: Callable[[int], None],
+    told: Told,
     setup: Setup | None = None,
 ) -> Ending:
     """Both sides to the end; `told` of the ticks. What breaks is in the ending."""
     ending = _ending(directory, scenario, transport, told, setup)
     if ending.outcome:
-        told(ending.outcome.tick)
+        told(ending.outcome.tick, None)
     return ending
 
 
@@ -29,7 +29,7 @@ def _ending(
     directory: Path,
     scenario: Scenario,
     transport: Transport,
-    told: Callable[[int], None],
+    told: Told,
     setup: Setup | None,
 ) -> Ending:
     if transport != "inline":

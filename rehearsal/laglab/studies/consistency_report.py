@@ -14,6 +14,7 @@ from laglab.results.figures.panels import marked
 from laglab.results.figures.style import BLUE, GREY, PALE
 from laglab.scenario import Scenario
 from laglab.studies.consistency import CONFIDENCE, DEGREES, Average, Verdict, mean_of_known
+from laglab.tables import plain_table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,7 +26,7 @@ AXES = ("x", "y", "θ")
 def consistency_table(scenario: Scenario, verdicts: Sequence[Verdict], seeds: int) -> Table:
     """One line a filter."""
     low, high = verdicts[0].bounds
-    table = Table(
+    table = plain_table(
         title=f"{scenario.name}: P_0 = {scenario.estimator.initial_covariance:g} I, n = "
         f"{scenario.link.command_delay}, m = {scenario.link.measurement_delay}, {seeds} seeds",
         caption="In the loop, over its link. Of a consistent filter NEES and\n"
@@ -33,8 +34,6 @@ def consistency_table(scenario: Scenario, verdicts: Sequence[Verdict], seeds: in
         "Ahead: NEES of the prediction by which the command was made.\n"
         "Worst: NEES of the worst run. x, y, θ: the standard deviation\n"
         "claimed, by the true one. P<0: of ticks. Lost: runs.",
-        box=None,
-        padding=(0, 1, 0, 0),
     )
     headings = ("filter", "NEES", "%", "NIS", "%", "ahead", "worst", *AXES, "P<0", "lost", "")
     for heading in headings:

@@ -11,6 +11,7 @@ from rich.table import Table
 from laglab.interface import run
 from laglab.results.summary import Errors
 from laglab.scenario import Scenario, changed
+from laglab.tables import plain_table
 from laglab_control import Erratum, PrintedController
 
 EXACT = 1e-9
@@ -77,16 +78,12 @@ def _mean(errors: list[Errors]) -> Errors | None:
 
 def costs_table(scenario: Scenario, rows: list[Cost]) -> Table:
     """One line a variant."""
-    table = Table(
-        box=None,
-        pad_edge=False,
-        collapse_padding=True,
+    table = plain_table(
+        *("as printed in", "without noise", "converges", "with noise", "diverged"),
         title=f"{scenario.name}: popf, n = {scenario.link.command_delay}, "
         f"m = {scenario.link.measurement_delay}, P_0 = {scenario.estimator.initial_covariance:g} I",
         caption="RMS error of the estimate in x (m), y (m), θ (rad); diverged: runs with noise",
     )
-    for column in ("as printed in", "without noise", "converges", "with noise", "diverged"):
-        table.add_column(column)
     for row in rows:
         table.add_row(
             row.name,

@@ -4,9 +4,12 @@ The order of a tick is that of docs/tick.md, the numbers are those of the runs o
 link does more than delay, what happens when is found out first, seed by seed (`schedule`).
 """
 
+from __future__ import annotations
+
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +20,10 @@ from laglab.scenario import Scenario
 from laglab.studies.schedule import schedule_of
 from laglab_control.batch import BATCHED, BatchController, Pose, Speeds
 from laglab_control.batch.impaired import ImpairedController, Timetable
-from laglab_fmu import Fleet
 from laglab_gateway.drive import FASTEST, Safety
+
+if TYPE_CHECKING:
+    from laglab_fmu import Fleet
 
 Array = NDArray[np.float64]
 
@@ -45,6 +50,8 @@ class Many:
 
 def run_many(scenarios: Sequence[Scenario]) -> Many:
     """All of them to the end. There must be no reason to run them one by one (`why_one_by_one`)."""
+    from laglab_fmu import Fleet  # loads FMPy
+
     scenario = scenarios[0]
     many = _unwritten(scenario.must_end(), len(scenarios))
     parameters = [robot_parameters(each) for each in scenarios]

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from rich.table import Table
 
-from laglab.results.figures import sheet
+from laglab.results.figures import INCHES, printed, sheet
 from laglab.studies.trust import LOOKED_AT_AFTER, Fared
+from laglab.tables import plain_table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -63,13 +64,11 @@ def _score(ones: Sequence[Fared]) -> Score:
 def trust_table(of: Scores, stations: Sequence[str], seeds: int) -> Table:
     """Of each condition how many runs converged, a column a station; and of the first station the
     error, the NEES and the alarms."""
-    table = Table(
+    table = plain_table(
         title=f"converged, of {seeds} runs each",
         caption=f"of {stations[0]}: root mean square error of the position \\[m];\n"
         "NEES (3 if its claims are true); runs with an alarm; of these, how many\n"
         f"were within {FOUND:g} m of the robot {LOOKED_AT_AFTER:g} s later",
-        box=None,
-        padding=(0, 1, 0, 0),
     )
     table.add_column("", no_wrap=True)
     for name in (*stations, "RMS", "NEES", "alarm", "found"):
@@ -91,14 +90,16 @@ def draw_trust(of: Scores, stations: Sequence[str]) -> Figure:
     shares = np.array(
         [[of[c, s].converged / of[c, s].runs for s in stations] for c in conditions], dtype=float
     )
-    figure = sheet(3 + 1.4 * len(stations), 1.5 + 0.4 * len(conditions))
-    axes = figure.subplots()
-    axes.imshow(shares, cmap="cividis", vmin=0, vmax=1, aspect="auto")
-    for (row, column), share in np.ndenumerate(shares):
-        ink = "black" if share > 0.5 else "white"
-        axes.text(column, row, f"{share:.0%}", ha="center", va="center", color=ink)
-    axes.set_xticks(range(len(stations)), [name.replace(", ", ",\n") for name in stations])
-    axes.set_yticks(range(len(conditions)), conditions)
-    axes.xaxis.tick_top()
-    axes.set_title("runs that end at the goal")
+    with printed():
+        figure = sheet(INCHES["two"], 0.8 + 0.25 * len(conditions))
+        axes = figure.subplots()
+        axes.imshow(shares, cmap="cividis", vmin=0, vmax=1, aspect="auto")
+        axes.grid(visible=False)
+        for (row, column), share in np.ndenumerate(shares):
+            ink = "black" if share > 0.5 else "white"
+            axes.text(column, row, f"{share:.0%}", ha="center", va="center", color=ink)
+        axes.set_xticks(range(len(stations)), [name.replace(", ", ",\n") for name in stations])
+        axes.set_yticks(range(len(conditions)), conditions)
+        axes.xaxis.tick_top()
+        axes.set_title("runs that end at the goal")
     return figure

@@ -1,5 +1,6 @@
 """Figures for papers and screens: a run, several runs laid over each other, a moving picture."""
 
+from laglab.results.figures.moving import animation_place, save_animation
 from laglab.results.figures.overlaid import draw_runs
 from laglab.results.figures.saving import FIGURE_FILE, picture_place, save, save_figure
 from laglab.results.figures.style import INCHES, Width, legend, line, printed, sheet
@@ -9,6 +10,7 @@ __all__ = [
     "FIGURE_FILE",
     "INCHES",
     "Width",
+    "animation_place",
     "draw_run",
     "draw_runs",
     "legend",
@@ -16,6 +18,7 @@ __all__ = [
     "picture_place",
     "printed",
     "save",
+    "save_animation",
     "save_figure",
     "sheet",
     "title",

@@ -59,7 +59,7 @@ def draw_delays(axes: Axes, shown: Shown, direction: str, bottom: bool = True) -
             markersize=2.6,
             markeredgewidth=0.7,
             color=color,
-            label=f"{cause}: {len(times)}",
+            label=f"{cause}: {view.counts[cause]}",
             rasterized=len(times) > 2000,
         )
     if not len(time):

@@ -1,0 +1,19 @@
+"""Every table of the command line: one style, within 80 columns, readable in narrower ones."""
+
+from rich.table import Table
+
+
+def plain_table(*headings: str, title: str = "", caption: str = "", headed: bool = True) -> Table:
+    """Without lines: title and caption at the left, headings, a row a line. Numbers are put at the
+    right by who adds their columns."""
+    return Table(
+        *headings,
+        title=title or None,
+        caption=caption or None,
+        title_justify="left",
+        caption_justify="left",
+        show_header=headed,
+        box=None,
+        pad_edge=False,
+        padding=(0, 1, 0, 0),
+    )
