@@ -26,14 +26,19 @@ from laglab_gateway.outcome import Outcome
 from laglab_gateway.plant import Plant, Reading
 from laglab_gateway.record.audit import ClockReport, DelayReport, DirectionReport, LinkReport
 from laglab_gateway.record.files import (
+    ARRIVALS_FILE,
+    CLAIMS_FILE,
     LINK_FILE,
+    ROWS,
     TIMING_FILE,
     TLOG_FILE,
     TRACE_FILE,
     FileRecorder,
+    Row,
 )
 from laglab_gateway.record.lateness import Lateness, TimingReport
-from laglab_gateway.record.recorder import MemoryRecorder, Recorder, Tapped, TimingRow
+from laglab_gateway.record.recorder import MemoryRecorder, Recorder, Tapped
+from laglab_gateway.record.rows import FOLLOWED, ArrivalRow, ClaimRow, TimingRow, claimed
 from laglab_gateway.record.trace import (
     Trace,
     TraceRow,
@@ -54,13 +59,19 @@ from laglab_gateway.services import (
 from laglab_gateway.side import RobotSide
 
 __all__ = [
+    "ARRIVALS_FILE",
+    "CLAIMS_FILE",
+    "FOLLOWED",
     "IDEAL",
     "LINK_FILE",
+    "ROWS",
     "TIMING_FILE",
     "TLOG_FILE",
     "TRACE_FILE",
+    "ArrivalRow",
     "Burst",
     "Channel",
+    "ClaimRow",
     "ClockReport",
     "ConfigError",
     "DelayReport",
@@ -91,6 +102,7 @@ __all__ = [
     "Recorder",
     "Relay",
     "RobotSide",
+    "Row",
     "Safety",
     "Served",
     "Services",
@@ -107,6 +119,7 @@ __all__ = [
     "UnplaceableError",
     "Watch",
     "Watcher",
+    "claimed",
     "first_tick",
     "format_row",
     "read_link_log",

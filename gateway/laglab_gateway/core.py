@@ -77,7 +77,8 @@ class Gateway(RobotSide):
                 self._owed.owe(self._memory.answers(message))
             else:
                 self.audit.command.arrived(message.tick, k)
-                self._follow(message, k, safety)
+                if self._follow(message, k, safety):
+                    self.notes.came("command", message.tick, k, self.elapsed)
         supervised = supervise(self._drive, k, Ts, safety)
         if supervised.mode is not self._drive.mode:
             self.audit.stopped(k)

@@ -161,6 +161,9 @@ class Relay(RobotSide):
         if self._in_force < sample.command_tick <= self._drive.command_tick:
             self._in_force = sample.command_tick
             self.audit.command.arrived(sample.command_tick, sample.tick - 1)
+            self.notes.came(
+                "command", sample.command_tick, sample.tick - 1, sample.tick - 1 - self.first
+            )
 
     def forward(self) -> list[bytes]:
         """The frames for the robot: the commands that are to come into force at its next tick."""

@@ -18,6 +18,7 @@ from laglab_gateway.link.timeline import Direction
 from laglab_gateway.memory import Owed, SpeedMemory
 from laglab_gateway.outcome import Outcome, reason_of
 from laglab_gateway.record.audit import Audit, DirectionAudit
+from laglab_gateway.record.rows import Notes
 from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import Asker, RobotState, Services, safety_now
 from laglab_gateway.speakers import from_station, is_for_robot
@@ -67,6 +68,7 @@ class RobotSide(ABC):
         self.station_end: End | None = None
         self.station_settings: Settings | None = None
         self.audit = Audit(DirectionAudit(n), DirectionAudit(m))
+        self.notes = Notes(Ts)
         self.services = services
         self.settings = config.settings
         self._config = config
@@ -130,6 +132,7 @@ class RobotSide(ABC):
         for message in due:
             if isinstance(message, Measurement):
                 self.audit.measurement.arrived(message.tick, self.tick)
+                self.notes.came("measurement", message.tick, self.tick, self.elapsed)
         self._batch = [*due, Tick(self.tick, len(due))]
         return self.repeat_tick()
 
@@ -201,6 +204,7 @@ class RobotSide(ABC):
         """Follow from `tick` on a command that came across; False, and counted, when rejected."""
         if rejected := rejection(self._drive, command, safety):
             self.audit.refused[rejected] += 1
+            self.notes.came("command", command.tick, tick, tick - self.first, rejected.value)
             self._rejected = rejected if rejected in WHY_STOPPING else self._rejected
             return False
         self._drive, self._rejected = follow(command, tick), None
@@ -256,8 +260,9 @@ class RobotSide(ABC):
 
     def _close(self) -> None:
         self.audit.unanswered += not self.answered
-        if self.services.arming.stops > self.audit.emergency_stops:
-            self.audit.emergency_stops = self.services.arming.stops
+        if self._estimates:
+            self.notes.said(self._estimates[0], self.elapsed)
+        if self.audit.emergency_stopped(self.services.arming.stops, self.tick):
             self.announce(EMERGENCY_STOP, MAV_SEVERITY_EMERGENCY)
         self.outcome = self.outcome or self._ending
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from laglab.errors import RunError
 from laglab.progress import progress_of
+from laglab.results.columns import read_columns
 from laglab.results.complete import Way, complete, keep
 from laglab.results.place import place
 from laglab.results.run import Kept, Run
@@ -15,7 +16,7 @@ from laglab.runs.rehearse import MakeController, Transport, rehearse_inline
 from laglab.runs.whole import run_into
 from laglab.scenario import Scenario, load
 from laglab_control import Controller
-from laglab_gateway import MemoryRecorder
+from laglab_gateway import ROWS, MemoryRecorder
 from laglab_protocol import EndReason
 
 
@@ -83,5 +84,6 @@ def _in_memory(done: Run) -> Run:
         name: read_shadow(shadow_file(done.directory, name))
         for name in done.scenario.estimator.compare
     }
-    kept = Kept(done.trace, done.link, done.timing, shadows)
+    tables = {name: read_columns(done.directory / name, kind) for name, kind in ROWS.items()}
+    kept = Kept(done.trace, tables, shadows)
     return Run(done.scenario, done.summary, None, kept)

@@ -12,8 +12,10 @@ import pytest
 import typer
 
 from laglab.command import app
+from laglab.results.shadows import COLUMNS
 from laglab_control import Erratum, Law, delay_margin
 from laglab_control.estimators.popf import delay_limit
+from laglab_gateway import ROWS, TraceRow
 
 ROOT = Path(__file__).parents[2]
 COMPONENTS = ("fmu", "protocol", "gateway", "controller", "rehearsal", "examples", "tests")
@@ -151,3 +153,15 @@ def test_commands_in_the_pages_are_understood(command: str) -> None:
     group = typer.main.get_command(app)
     name, *arguments = shlex.split(command)
     group.commands[name].make_context(name, arguments)  # type: ignore[attr-defined]
+
+
+def test_every_column_of_a_run_s_files_is_documented() -> None:
+    described: dict[str, set[str]] = {}
+    page = (ROOT / "docs" / "reference" / "files.md").read_text("utf-8")
+    file = ""
+    for cells in table(page, "Columns"):
+        file = cells[0].strip("`") or file
+        described.setdefault(file, set()).update(re.findall("`(.*?)`", cells[1]))
+    assert described.pop("trace.csv") == set(TraceRow._fields)
+    assert described.pop("shadow-NAME.csv") == set(COLUMNS)
+    assert described == {name: set(kind._fields) for name, kind in ROWS.items()}

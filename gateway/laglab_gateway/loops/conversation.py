@@ -216,6 +216,10 @@ class Conversation:
         self._recorder.row(row)
         if rows := self._gateway.take_link_rows():
             self._recorder.link(rows)
+        if arrivals := self._gateway.notes.take_arrivals():
+            self._recorder.arrivals(arrivals)
+        if claims := self._gateway.notes.take_claims():
+            self._recorder.claims(claims)
         self._around.progress(row.tick)
 
     def _say_goodbye(self) -> None:

@@ -8,7 +8,7 @@ from laglab_gateway.core import Gateway
 from laglab_gateway.loops.conversation import Conversation
 from laglab_gateway.loops.surroundings import Served, Surroundings
 from laglab_gateway.record.lateness import Lateness
-from laglab_gateway.record.recorder import TimingRow
+from laglab_gateway.record.rows import TimingRow
 from laglab_protocol import EndReason
 
 

@@ -56,6 +56,8 @@ class LinkReport(Struct, frozen=True):
     """How many there were."""
     timesync: ClockReport | None = None
     emergency_stops: int = 0
+    emergency_ticks: list[int] = []
+    """Ticks at which somebody stopped the robot for good; of many, the first."""
 
 
 @dataclass
@@ -100,12 +102,21 @@ class Audit:
     stops: int = 0
     first_stops: list[int] = field(default_factory=list)
     emergency_stops: int = 0
+    first_emergencies: list[int] = field(default_factory=list)
 
     def stopped(self, tick: int) -> None:
         """The failsafe began to stop the robot at `tick`."""
         self.stops += 1
         if len(self.first_stops) < STOPS_KEPT:
             self.first_stops.append(tick)
+
+    def emergency_stopped(self, stops: int, tick: int) -> bool:
+        """There were so many emergency stops by the end of `tick`; True when that is news."""
+        news = stops > self.emergency_stops
+        self.emergency_stops = stops
+        if news and len(self.first_emergencies) < STOPS_KEPT:
+            self.first_emergencies.append(tick)
+        return news
 
     def of(self, direction: str) -> DirectionAudit:
         """One of the two."""
@@ -122,4 +133,5 @@ class Audit:
             stops=self.stops,
             timesync=clocks,
             emergency_stops=self.emergency_stops,
+            emergency_ticks=list(self.first_emergencies),
         )

@@ -9,13 +9,16 @@ from typing import Generic, TypeVar
 
 from laglab_gateway.errors import TraceError
 from laglab_gateway.link.log import LinkRow
-from laglab_gateway.record.recorder import Recorder, TimingRow
+from laglab_gateway.record.recorder import Recorder
+from laglab_gateway.record.rows import ArrivalRow, ClaimRow, TimingRow
 from laglab_gateway.record.trace import TraceRow, format_row
 from laglab_protocol import tlog_record
 
 TRACE_FILE = "trace.csv"
 TLOG_FILE = "robot.tlog"
 LINK_FILE = "link.csv"
+ARRIVALS_FILE = "arrivals.csv"
+CLAIMS_FILE = "claims.csv"
 TIMING_FILE = "timing.csv"
 
 R = TypeVar("R")
@@ -63,7 +66,14 @@ class _File(Generic[R]):
             os.ftruncate(self._file.fileno(), self._size)
 
 
-Row = TraceRow | LinkRow | TimingRow
+Row = TraceRow | LinkRow | ArrivalRow | ClaimRow | TimingRow
+ROWS: dict[str, type[Row]] = {
+    LINK_FILE: LinkRow,
+    ARRIVALS_FILE: ArrivalRow,
+    CLAIMS_FILE: ClaimRow,
+    TIMING_FILE: TimingRow,
+}
+"""Of the files that are there when there was something to say."""
 
 
 def _csv(path: Path, fields: tuple[str, ...]) -> _File[Row]:
@@ -72,7 +82,8 @@ def _csv(path: Path, fields: tuple[str, ...]) -> _File[Row]:
 
 
 class FileRecorder(Recorder):
-    """Writes `trace.csv` and `robot.tlog` into a directory; `link.csv` and `timing.csv` if any.
+    """Writes `trace.csv` and `robot.tlog` into a directory; `link.csv`, `arrivals.csv`,
+    `claims.csv` and `timing.csv` if there is something to say.
 
     Kept until `flush`, then all of a file's records go there in one unbuffered write: a process
     killed at any moment leaves whole rows and whole records, up to the last flush. Once one of the
@@ -84,7 +95,7 @@ class FileRecorder(Recorder):
         self._directory = directory
         try:
             directory.mkdir(parents=True, exist_ok=True)
-            for stale in (LINK_FILE, TIMING_FILE):
+            for stale in ROWS:
                 (directory / stale).unlink(missing_ok=True)
         except OSError as error:
             raise TraceError(f"cannot record into {directory}: {error.strerror}") from error
@@ -92,8 +103,7 @@ class FileRecorder(Recorder):
         self._tlog = _File[tuple[int, bytes]](
             directory / TLOG_FILE, b"", lambda record: tlog_record(*record)
         )
-        self._link: _File[Row] | None = None
-        self._timing: _File[Row] | None = None
+        self._others: dict[str, _File[Row]] = {}
 
     def row(self, row: TraceRow) -> None:
         """One more row of the trace."""
@@ -105,13 +115,24 @@ class FileRecorder(Recorder):
 
     def link(self, rows: Iterable[LinkRow]) -> None:
         """More rows of the link log."""
-        self._link = self._link or _csv(self._directory / LINK_FILE, LinkRow._fields)
-        self._link.waiting += rows
+        self._keep(LINK_FILE, rows)
+
+    def arrivals(self, rows: Iterable[ArrivalRow]) -> None:
+        """What came out of the link."""
+        self._keep(ARRIVALS_FILE, rows)
+
+    def claims(self, rows: Iterable[ClaimRow]) -> None:
+        """What the station claims for its estimates."""
+        self._keep(CLAIMS_FILE, rows)
 
     def timing(self, row: TimingRow) -> None:
         """One tick's lateness."""
-        self._timing = self._timing or _csv(self._directory / TIMING_FILE, TimingRow._fields)
-        self._timing.waiting.append(row)
+        self._keep(TIMING_FILE, [row])
+
+    def _keep(self, name: str, rows: Iterable[Row]) -> None:
+        if name not in self._others:
+            self._others[name] = _csv(self._directory / name, ROWS[name]._fields)
+        self._others[name].waiting += rows
 
     def flush(self) -> None:
         """Write all that has been kept."""
@@ -133,4 +154,4 @@ class FileRecorder(Recorder):
 
     @property
     def _files(self) -> "list[_File[Row] | _File[tuple[int, bytes]]]":
-        return [file for file in (self._trace, self._tlog, self._link, self._timing) if file]
+        return [self._trace, self._tlog, *self._others.values()]

@@ -1,18 +1,10 @@
 """Who is told what happens in a run, and keeps it."""
 
 from collections.abc import Iterable
-from typing import NamedTuple
 
 from laglab_gateway.link.log import LinkRow
+from laglab_gateway.record.rows import ArrivalRow, ClaimRow, TimingRow
 from laglab_gateway.record.trace import TraceRow
-
-
-class TimingRow(NamedTuple):
-    """When a tick began after its deadline [s], and when its answer came after that [s]."""
-
-    tick: int
-    lateness: float
-    answer: float | None
 
 
 class Recorder:
@@ -29,6 +21,12 @@ class Recorder:
 
     def link(self, rows: Iterable[LinkRow]) -> None:
         """What an impaired link did to frames."""
+
+    def arrivals(self, rows: Iterable[ArrivalRow]) -> None:
+        """What came out of the link at this tick."""
+
+    def claims(self, rows: Iterable[ClaimRow]) -> None:
+        """What the station claims for its estimate of this tick, if it does."""
 
     def timing(self, row: TimingRow) -> None:
         """One tick began, on the wall clock."""
@@ -60,6 +58,16 @@ class Tapped(Recorder):
         for recorder in self._recorders:
             recorder.link(rows)
 
+    def arrivals(self, rows: Iterable[ArrivalRow]) -> None:
+        rows = list(rows)
+        for recorder in self._recorders:
+            recorder.arrivals(rows)
+
+    def claims(self, rows: Iterable[ClaimRow]) -> None:
+        rows = list(rows)
+        for recorder in self._recorders:
+            recorder.claims(rows)
+
     def timing(self, row: TimingRow) -> None:
         for recorder in self._recorders:
             recorder.timing(row)
@@ -81,6 +89,8 @@ class MemoryRecorder(Recorder):
         self.tlog: list[tuple[int, bytes]] = []
         """Each frame, with its time [µs]."""
         self.link_rows: list[LinkRow] = []
+        self.arrival_rows: list[ArrivalRow] = []
+        self.claim_rows: list[ClaimRow] = []
         self.timing_rows: list[TimingRow] = []
 
     def row(self, row: TraceRow) -> None:
@@ -91,6 +101,12 @@ class MemoryRecorder(Recorder):
 
     def link(self, rows: Iterable[LinkRow]) -> None:
         self.link_rows += rows
+
+    def arrivals(self, rows: Iterable[ArrivalRow]) -> None:
+        self.arrival_rows += rows
+
+    def claims(self, rows: Iterable[ClaimRow]) -> None:
+        self.claim_rows += rows
 
     def timing(self, row: TimingRow) -> None:
         self.timing_rows.append(row)

@@ -1,6 +1,6 @@
 """From a record and an ending to a run: what every way of making one has in common."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab.errors import RefusedError, RunError
+from laglab.results.columns import Columns, columns_of
 from laglab.results.digest import Digest, digest
 from laglab.results.figure import save_figure
 from laglab.results.numbers import goal_errors, has_converged, robot_pose
-from laglab.results.run import Kept, Run, columns_of
+from laglab.results.run import Kept, Run
 from laglab.results.shadows import (
     Shadow,
     collected,
@@ -25,11 +26,15 @@ from laglab.runs.ending import Ending
 from laglab.scenario import Scenario
 from laglab.version import laglab_version
 from laglab_gateway import (
+    ARRIVALS_FILE,
+    CLAIMS_FILE,
+    LINK_FILE,
+    ROWS,
+    TIMING_FILE,
     TLOG_FILE,
     TRACE_FILE,
-    LinkRow,
     MemoryRecorder,
-    TimingRow,
+    Row,
     Trace,
     TraceError,
     trace_of,
@@ -85,9 +90,17 @@ def keep(scenario: Scenario, way: Way, ending: Ending, recorder: MemoryRecorder)
     summary = summarise(
         scenario, way, ending, digest([trace], scenario.link.measurement_delay), compared
     )
-    link = columns_of(recorder.link_rows, LinkRow)
-    timing = columns_of(recorder.timing_rows, TimingRow)
-    return Run(scenario, summary, None, Kept(trace, link, timing, shadows))
+    return Run(scenario, summary, None, Kept(trace, _tables(recorder), shadows))
+
+
+def _tables(recorder: MemoryRecorder) -> dict[str, Columns]:
+    rows: dict[str, Sequence[Row]] = {
+        LINK_FILE: recorder.link_rows,
+        ARRIVALS_FILE: recorder.arrival_rows,
+        CLAIMS_FILE: recorder.claim_rows,
+        TIMING_FILE: recorder.timing_rows,
+    }
+    return {name: columns_of(rows[name], kind) for name, kind in ROWS.items()}
 
 
 def nothing_recorded(ending: Ending, otherwise: str) -> BaseException:

@@ -10,9 +10,9 @@ from laglab.results.shadows import shadow_file
 from laglab.results.summary import SUMMARY_FILE
 from laglab.results.writable import folder_place
 from laglab.scenario import Scenario
-from laglab_gateway import LINK_FILE, TIMING_FILE, TLOG_FILE, TRACE_FILE
+from laglab_gateway import ROWS, TLOG_FILE, TRACE_FILE
 
-OURS = (SCENARIO_FILE, SUMMARY_FILE, TRACE_FILE, TLOG_FILE, LINK_FILE, TIMING_FILE, FIGURE_FILE)
+OURS = (SCENARIO_FILE, SUMMARY_FILE, TRACE_FILE, TLOG_FILE, *ROWS, FIGURE_FILE)
 
 
 def place(scenario: Scenario, out: Path | None, force: bool = False, suffix: str = "") -> Path:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,17 +11,19 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.errors import NoRunError, ResultsError
+from laglab.errors import ResultsError
+from laglab.results.columns import Columns, column_pieces, read_columns
 from laglab.results.figure import draw
 from laglab.results.shadows import Shadow, beside, read_shadow, shadow_file
 from laglab.results.summary import Summary, read_summary
 from laglab.scenario import Scenario, load
 from laglab_gateway import (
+    ARRIVALS_FILE,
+    CLAIMS_FILE,
     LINK_FILE,
+    ROWS,
     TIMING_FILE,
     TRACE_FILE,
-    LinkRow,
-    TimingRow,
     Trace,
     read_trace,
     trace_pieces,
@@ -36,16 +37,13 @@ SCENARIO_FILE = "scenario.toml"
 MOST_DRAWN = 20_000
 """Rows: more than that no figure shows."""
 
-Columns = Mapping[str, NDArray[np.generic]]
-"""An array per column; none of them has an entry where nothing was recorded."""
-
 
 class Kept(NamedTuple):
     """All that was recorded of a run, in memory."""
 
     trace: Trace
-    link: Columns
-    timing: Columns
+    tables: Mapping[str, Columns]
+    """By the name of the file in which each would be."""
     shadows: Mapping[str, Shadow]
 
 
@@ -76,12 +74,29 @@ class Run:
     @cached_property
     def link(self) -> Columns:
         """What an impaired link did: a row for each copy of each frame, columns as in link.csv."""
-        return self.kept.link if self.kept else _columns(self._folder / LINK_FILE, LinkRow)
+        return self._table(LINK_FILE)
+
+    @cached_property
+    def arrivals(self) -> Columns:
+        """When each measurement and each command came, columns as in arrivals.csv: its delay is
+        `arrived` - `tick`."""
+        return self._table(ARRIVALS_FILE)
+
+    @cached_property
+    def claims(self) -> Columns:
+        """The covariance that the station claims for its estimates, columns as in claims.csv."""
+        return self._table(CLAIMS_FILE)
 
     @cached_property
     def timing(self) -> Columns:
         """How late each tick began and was answered [s], of ticks on the wall clock."""
-        return self.kept.timing if self.kept else _columns(self._folder / TIMING_FILE, TimingRow)
+        return self._table(TIMING_FILE)
+
+    def table_pieces(self, name: str) -> Iterator[Columns]:
+        """The rows of one of these files, as many at a time as memory always has room for."""
+        if self.kept:
+            return iter([self.kept.tables[name]])
+        return column_pieces(self._folder / name, ROWS[name])
 
     def figure(self) -> Figure:
         """The run as a picture, to be shown or saved. Needs matplotlib."""
@@ -108,6 +123,11 @@ class Run:
     def pieces(self) -> Iterator[Trace]:
         """The trace, as many rows at a time as memory always has room for."""
         return iter([self.kept.trace]) if self.kept else trace_pieces(self._folder / TRACE_FILE)
+
+    def _table(self, name: str) -> Columns:
+        return (
+            self.kept.tables[name] if self.kept else read_columns(self._folder / name, ROWS[name])
+        )
 
     @property
     def _folder(self) -> Path:
@@ -155,37 +175,3 @@ def _thinned(trace: Trace) -> Trace:
 def _at(shadow: Shadow, ticks: NDArray[np.float64]) -> Shadow:
     there = np.isin(shadow["tick"], ticks)
     return {name: column[there] for name, column in shadow.items()}
-
-
-def columns_of(rows: list[LinkRow] | list[TimingRow], kind: type[LinkRow | TimingRow]) -> Columns:
-    """The rows' columns: texts, whole numbers, doubles (NaN for nothing)."""
-    cells = zip(*rows, strict=True) if rows else ((),) * len(kind._fields)
-    return {
-        name: np.array([np.nan if cell is None else cell for cell in column])
-        for name, column in zip(kind._fields, cells, strict=True)
-    }
-
-
-def _columns(path: Path, kind: type[LinkRow | TimingRow]) -> Columns:
-    """Of a CSV file, which a run leaves only where there was something to say."""
-    if not path.exists():
-        return columns_of([], kind)
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            header, *rows = csv.reader(file)
-    except (OSError, ValueError, csv.Error) as error:
-        raise NoRunError(f"{path} cannot be read: {error}") from error
-    if header != list(kind._fields):
-        raise NoRunError(f"{path}: expected the columns {','.join(kind._fields)}")
-    whole = [row for row in rows if len(row) == len(header)]
-    cells = zip(*whole, strict=True) if whole else ((),) * len(header)
-    return {name: _parsed(column) for name, column in zip(header, cells, strict=True)}
-
-
-def _parsed(cells: tuple[str, ...]) -> NDArray[np.generic]:
-    for kind in (int, float):
-        try:
-            return np.array([kind(cell or "nan") for cell in cells])
-        except ValueError:
-            continue
-    return np.array(cells)

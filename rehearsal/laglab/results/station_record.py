@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
+from laglab.results.heard import heard_ticks
 from laglab_gateway import TLOG_FILE, FileRecorder, TraceRow
 from laglab_station import Onlooker, SessionTick, read_session
 
@@ -39,16 +40,23 @@ class StationRecord(Onlooker):
         self._progress(tick)
 
     def close(self) -> None:
-        """What was heard, once more as a trace. Raises TraceError."""
+        """What was heard, once more as a run's tables. Raises TraceError."""
         try:
             self._recorder.flush()
-            session = read_session(self._directory / TLOG_FILE)
+            session = self._noted(read_session(self._directory / TLOG_FILE))
             for row in station_rows(session, self._sample_time):
                 self._recorder.row(row)
                 if row.tick % LATEST == 0:
                     self._recorder.flush()
         finally:
             self._recorder.close()
+
+    def _noted(self, session: Iterable[SessionTick]) -> Iterator[SessionTick]:
+        """The same, its arrivals and claims recorded as it goes by."""
+        for heard, arrivals, claims in heard_ticks(session, self._sample_time):
+            self._recorder.arrivals(arrivals)
+            self._recorder.claims(claims)
+            yield heard
 
 
 def station_rows(session: Iterable[SessionTick], sample_time: float) -> Iterator[TraceRow]:

@@ -1,0 +1,81 @@
+"""What is kept of each tick besides the trace."""
+
+from typing import NamedTuple
+
+from laglab_protocol import Estimate
+
+FOLLOWED = "no"
+"""`ArrivalRow.refused` of what was not."""
+
+
+class TimingRow(NamedTuple):
+    """When a tick began after its deadline [s], and when its answer came after that [s]."""
+
+    tick: int
+    lateness: float
+    answer: float | None
+
+
+class ArrivalRow(NamedTuple):
+    """A message that came out of the link: its stamp, the tick at which it came, that tick's time
+    since the run's first [s]; and why the robot refused it, if it did.
+
+    Of a command the tick at which it came into force, or would have; of a real robot's, and as a
+    station alone sees it, that is what its measurements tell.
+    """
+
+    direction: str
+    tick: int
+    arrived: int
+    time: float
+    refused: str = FOLLOWED
+
+
+class ClaimRow(NamedTuple):
+    """The covariance P that the station claims for its estimate of a tick [m², m rad, rad²], by its
+    upper triangle; the tick's time since the run's first [s]."""
+
+    tick: int
+    time: float
+    p_xx: float
+    p_xy: float
+    p_xt: float
+    p_yy: float
+    p_yt: float
+    p_tt: float
+
+
+def claimed(estimate: Estimate, time: float) -> ClaimRow:
+    """What an estimate claims of itself."""
+    of = estimate
+    return ClaimRow(of.tick, time, of.p_xx, of.p_xy, of.p_xt, of.p_yy, of.p_yt, of.p_tt)
+
+
+class Notes:
+    """Arrivals and claims, as they come, until they are taken."""
+
+    def __init__(self, sample_time: float) -> None:
+        self._sample_time = sample_time
+        self._arrivals: list[ArrivalRow] = []
+        self._claims: list[ClaimRow] = []
+
+    def came(
+        self, direction: str, stamp: int, tick: int, elapsed: int, refused: str = FOLLOWED
+    ) -> None:
+        """What is stamped so came out of the link at `tick`, so many after the run's first."""
+        time = elapsed * self._sample_time
+        self._arrivals.append(ArrivalRow(direction, stamp, tick, time, refused))
+
+    def said(self, estimate: Estimate, elapsed: int) -> None:
+        """The station said so of a tick, so many after the run's first."""
+        self._claims.append(claimed(estimate, elapsed * self._sample_time))
+
+    def take_arrivals(self) -> list[ArrivalRow]:
+        """All since the last call."""
+        arrivals, self._arrivals = self._arrivals, []
+        return arrivals
+
+    def take_claims(self) -> list[ClaimRow]:
+        """All since the last call."""
+        claims, self._claims = self._claims, []
+        return claims

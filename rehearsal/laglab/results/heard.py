@@ -1,0 +1,37 @@
+"""What the frames of a session tell of the link and of the station's claims."""
+
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+from laglab_gateway import ArrivalRow, ClaimRow, claimed
+from laglab_station import SessionTick
+
+
+class HeardTick(NamedTuple):
+    """One tick of a session, and what a run's tables say of it."""
+
+    tick: SessionTick
+    arrivals: list[ArrivalRow]
+    claims: list[ClaimRow]
+
+
+def heard_ticks(session: Iterable[SessionTick], sample_time: float) -> Iterator[HeardTick]:
+    """Each tick with the measurements that came with it; with the commands that the robot says, for
+    the first time, were in force; and with what the station claimed."""
+    first: int | None = None
+    in_force = -1
+    for heard in session:
+        first = heard.tick if first is None else first
+        arrivals: list[ArrivalRow] = []
+        for z in heard.measurements:
+            arrivals.append(_arrival("measurement", z.tick, heard.tick, first, sample_time))
+            if z.command_tick > in_force and z.tick > first:
+                in_force = z.command_tick
+                arrivals.append(_arrival("command", in_force, z.tick - 1, first, sample_time))
+        time = (heard.tick - first) * sample_time
+        claims = [claimed(heard.estimate, time)] if heard.estimate else []
+        yield HeardTick(heard, arrivals, claims)
+
+
+def _arrival(direction: str, stamp: int, tick: int, first: int, sample_time: float) -> ArrivalRow:
+    return ArrivalRow(direction, stamp, tick, (tick - first) * sample_time)
