@@ -17,6 +17,7 @@ from laglab.commands import (
     maps,
     protocol,
     replay,
+    report,
     reproduce,
     run,
     scenario,
@@ -62,6 +63,7 @@ app.command("replay")(replay.replay)
 app.command("scenarios")(scenarios.scenarios)
 app.command("estimators")(estimators.estimators)
 app.command("scenario")(scenario.scenario)
+app.command("report")(report.report)
 app.command("compare")(compare.compare)
 app.command("consistency")(consistency.consistency)
 app.command("trust")(trust.trust)

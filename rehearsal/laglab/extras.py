@@ -15,13 +15,14 @@ class Need(Enum):
     MAPPING = "study", ("matplotlib", "pyarrow")
     STUDYING = "study", ("fmpy", "pyarrow", "pandas")
     SPREADING = "study", ("distributed",)
+    SEEING = "see", ("bokeh",)
 
     def __init__(self, extra: str, modules: tuple[str, ...]) -> None:
         self.extra = extra
         self.modules = modules
 
 
-STEPPING, DRAWING, REHEARSING, MAPPING, STUDYING, SPREADING = Need
+STEPPING, DRAWING, REHEARSING, MAPPING, STUDYING, SPREADING, SEEING = Need
 
 
 def require(need: Need) -> None:

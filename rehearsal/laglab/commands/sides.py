@@ -8,9 +8,16 @@ import typer
 from rich.console import Console
 
 from laglab.commands.options import on_scenario
-from laglab.commands.run import ForceOption, KeyOption, OutOption, PlantKeyOption, PlantOption
+from laglab.commands.run import (
+    ForceOption,
+    KeyOption,
+    OutOption,
+    PlantKeyOption,
+    PlantOption,
+    ReportOption,
+)
 from laglab.commands.verdict import conclude
-from laglab.extras import STEPPING, require
+from laglab.extras import SEEING, STEPPING, require
 from laglab.progress import progress_of
 from laglab.results.complete import Way
 from laglab.results.place import place
@@ -72,10 +79,13 @@ def gateway(
     disarmed: Annotated[
         bool, typer.Option("--disarmed", help="Stand still until a ground station arms the robot.")
     ] = False,
+    report: ReportOption = False,
 ) -> None:
     """Be the robot's side of SCENARIO, for a controller elsewhere."""
     if plant is None:
         require(STEPPING)
+    if report:
+        require(SEEING)
     with (
         open_robot(scenario, Setup(plant, key, not disarmed, unsigned, plant_key)) as robot,
         open_endpoint(endpoint) as link,
@@ -98,7 +108,7 @@ def gateway(
             )
             ending = serve_alone(robot, around)
     way = Way("robot", link.name, plant or "fmu")
-    conclude(scenario, way, ending, directory)
+    conclude(scenario, way, ending, directory, report)
 
 
 @contextmanager
@@ -116,8 +126,11 @@ def controller(
     out: OutOption = None,
     force: ForceOption = False,
     key: KeyOption = None,
+    report: ReportOption = False,
 ) -> None:
     """Be the remote station of SCENARIO, for a robot elsewhere."""
+    if report:
+        require(SEEING)
     with open_endpoint(endpoint) as link, open_station(scenario, key) as (station, receiver):
         directory = place(scenario, out, force, suffix="-station")
         _say_whom_we_wait_for("the robot", link)
@@ -125,4 +138,4 @@ def controller(
             record = StationRecord(directory, scenario.sample_time, _warn, told)
             listener = Listener(link, receiver)
             ending = answer_alone(station, listener, scenario.silence_timeout, record)
-    conclude(scenario, Way("station", link.name, "unknown"), ending, directory)
+    conclude(scenario, Way("station", link.name, "unknown"), ending, directory, report)
