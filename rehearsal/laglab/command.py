@@ -31,6 +31,7 @@ from laglab.commands import (
 from laglab.commands.group import alone, group
 from laglab.errors import LaglabError, RunError, ScenarioError
 from laglab.interrupts import INTERRUPTED, on_interrupt
+from laglab.live import spelled_out
 from laglab.output import guarded
 from laglab.runs.errors import LINK_LOST, SIDE_ERRORS
 
@@ -94,7 +95,14 @@ def run_command(arguments: list[str] | None) -> int:
 def _exit_code(arguments: list[str] | None) -> int:
     try:
         on_interrupt(signal.default_int_handler)
-        code = int(app(arguments, prog_name="laglab", standalone_mode=False) or 0)
+        code = int(
+            app(
+                spelled_out(sys.argv[1:] if arguments is None else arguments),
+                prog_name="laglab",
+                standalone_mode=False,
+            )
+            or 0
+        )
     except typer.TyperException as error:
         return _say(error.format_message(), error.exit_code)
     except LaglabError as error:

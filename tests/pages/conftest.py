@@ -1,6 +1,9 @@
 """A browser for all tests of pages, and runs for them to show."""
 
-from collections.abc import Iterator
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -42,3 +45,12 @@ def pushed(tmp_path_factory: pytest.TempPathFactory) -> Run:
 @pytest.fixture
 def page(tmp_path: Path) -> Path:
     return tmp_path / "page.html"
+
+
+Start = Callable[..., "subprocess.Popen[str]"]
+
+
+@pytest.fixture
+def start(start_program: Start) -> Start:
+    """Start ``laglab ARGUMENTS`` in the background; whatever still runs at the end is ended."""
+    return partial(start_program, sys.executable, "-m", "laglab")

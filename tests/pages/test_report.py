@@ -18,6 +18,7 @@ from laglab_gateway import ARRIVALS_FILE, ROWS
 
 from .browser import Tab
 
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(180)]
 MOST_BYTES = 4_000_000
 
 

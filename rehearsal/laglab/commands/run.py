@@ -1,10 +1,12 @@
 """`laglab run`."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from laglab.commands.live import LiveOption, OpenOption, shown_live
 from laglab.commands.options import on_scenario
 from laglab.commands.verdict import conclude
 from laglab.errors import ScenarioError
@@ -58,6 +60,8 @@ def run(
     plant: PlantOption = None,
     plant_key: PlantKeyOption = None,
     report: ReportOption = False,
+    live: LiveOption = None,
+    open_: OpenOption = False,
 ) -> None:
     """Rehearse SCENARIO: robot, delayed link and controller.
 
@@ -70,8 +74,10 @@ def run(
         raise ScenarioError("--plant: a real robot does not wait: take --transport udp or serial")
     setup = Setup(plant, key, plant_key=plant_key)
     setup.check()
-    directory = place(scenario, out, force)
-    with progress_of(scenario) as told:
-        ending = run_into(directory, scenario, transport, told, setup)
     way = Way("both", transport, plant or "fmu")
-    conclude(scenario, way, ending, directory, report)
+    with shown_live(scenario, way, live, open_) as page:
+        directory = place(scenario, out, force)
+        with progress_of(scenario) as told:
+            setup = replace(setup, live=page.line if page else None)
+            ending = run_into(directory, scenario, transport, told, setup)
+        conclude(scenario, way, ending, directory, report, page)

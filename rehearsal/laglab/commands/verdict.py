@@ -8,6 +8,7 @@ import typer
 from rich.console import Console
 
 from laglab.errors import RefusedError, ResultsError, RunError
+from laglab.live import LivePage
 from laglab.results.complete import Way, complete
 from laglab.results.figure import FIGURE_FILE
 from laglab.results.place import REPORT_FILE
@@ -18,14 +19,21 @@ from laglab.scenario import Scenario
 
 
 def conclude(
-    scenario: Scenario, way: Way, ending: Ending, directory: Path, report: bool = False
+    scenario: Scenario,
+    way: Way,
+    ending: Ending,
+    directory: Path,
+    report: bool = False,
+    page: LivePage | None = None,
 ) -> NoReturn:
     """Say at once what broke, if something did; write the results and show them; end with the
     run's exit code. Raises ResultsError, and KeyboardInterrupt for a run that never began."""
     if ending.problem:
         print(f"laglab: {ending.problem}", file=sys.stderr, flush=True)
+        _tell(page, ending.problem)
     try:
         run = complete(scenario, way, ending, directory)
+        _tell(page, run.summary.verdict)
         _show(run)
         if report:
             report_on(run)
@@ -37,6 +45,11 @@ def conclude(
             raise
         print(f"warning: {error}", file=sys.stderr)
     raise typer.Exit(ending.exit_code)
+
+
+def _tell(page: LivePage | None, verdict: str) -> None:
+    if page is not None:
+        page.over(verdict)
 
 
 def report_on(run: Run) -> None:

@@ -3,6 +3,7 @@
 from contextlib import closing
 from pathlib import Path
 
+from laglab.live import fed
 from laglab.runs.child import Tell
 from laglab.runs.clock import LoopClock
 from laglab.runs.errors import LINK_LOST, SIDE_ERRORS
@@ -35,7 +36,8 @@ def robot_side(order: Order, tell: Tell) -> None:
     try:
         with (
             open_robot(scenario, _setup(order)) as robot,
-            closing(FileRecorder(Path(order.directory))) as recorder,
+            closing(FileRecorder(Path(order.directory))) as files,
+            fed(files, order.live, robot.controls) as recorder,
             open_endpoint(order.url) as endpoint,
             short_pauses(),
         ):

@@ -21,6 +21,7 @@ from laglab.results.report.tables import Tables
 from laglab.scenario import Scenario
 from laglab.version import laglab_version
 
+HERE = "laglab.results.report"
 INSIDE = {
     "default-src": "'none'",
     "script-src": "'unsafe-inline'",
@@ -60,6 +61,7 @@ class Page:
 
     title: str
     scripts: Sequence[str]
+    """Their texts."""
     rows: Sequence[tuple[str, Sequence[str]]] = ()
     duration: float = 0.0
     live: bool = False
@@ -74,7 +76,7 @@ def html(page: Page, panels: Sequence[Panel]) -> str:
     keyed: dict[str, Model] = {
         f"{i} {kind}": plot for i, plots in enumerate(drawn) for kind, plot in plots.items()
     }
-    script, divs = components(dict(keyed))
+    drawing, divs = components(dict(keyed))
     kinds = list(dict.fromkeys(kind for plots in drawn for kind in plots))
     runs = [
         {
@@ -95,12 +97,16 @@ def html(page: Page, panels: Sequence[Panel]) -> str:
         duration=page.duration,
         rows=page.rows,
         policy="; ".join(f"{what} {where}" for what, where in page.policy.items()),
-        style=Markup(_read("page.css")),
+        style=Markup(text_of(HERE, "page.css")),
         runs=runs,
         kinds=kinds,
         made_by=_made_by(),
         settings=_settings(panels),
-        scripts=Markup("\n".join([*_bokeh(), script, *map(_script, ("robot.js", *page.scripts))])),
+        scripts=Markup(
+            "\n".join(
+                [*_bokeh(), drawing, *map(_tagged, (text_of(HERE, "robot.js"), *page.scripts))]
+            )
+        ),
     )
 
 
@@ -124,21 +130,22 @@ def _settings(panels: Sequence[Panel]) -> Markup:
 
 def _template() -> jinja2.Template:
     return jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(
-        _read("page.html")
+        text_of(HERE, "page.html")
     )
 
 
-def _read(name: str) -> str:
-    return (files("laglab.results.report") / name).read_text(encoding="utf-8")
+def text_of(package: str, name: str) -> str:
+    """The text of a file that lies beside our modules."""
+    return (files(package) / name).read_text(encoding="utf-8")
 
 
-def _script(name: str) -> str:
-    return f"<script>{_read(name)}</script>"
+def _tagged(text: str) -> str:
+    return f"<script>{text}</script>"
 
 
 def _bokeh() -> list[str]:
-    inline = Resources(mode="inline", components=["bokeh"], log_level="warn")
-    return [f"<script>{script}</script>" for script in inline.js_raw]
+    inline = Resources(mode="inline", components=["bokeh"], log_level="error")
+    return [_tagged(text) for text in inline.js_raw]
 
 
 def _made_by() -> str:

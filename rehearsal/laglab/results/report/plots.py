@@ -140,7 +140,7 @@ def legend_above(plot: figure) -> None:
     legend.location = "top_left"
     legend.click_policy = "hide"
     legend.label_text_font_size = "11px"
-    legend.padding, legend.spacing = 2, 10
+    legend.spacing = 10
     legend.border_line_color = None
     legend.background_fill_alpha = 0.0
     plot.add_layout(legend, "above")

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from laglab.results.numbers import is_measured
-from laglab.results.report.page import Page, Panel, html
+from laglab.results.report.page import HERE, Page, Panel, html, text_of
 from laglab.results.report.reading import tables_of
 from laglab.results.run import Run
 from laglab.results.summary import Summary
@@ -24,7 +24,7 @@ def report_html(runs: Sequence[Run]) -> str:
     ]
     page = Page(
         title=" and ".join(names) if len(runs) > 1 else _title(runs[0]),
-        scripts=["player.js"],
+        scripts=[text_of(HERE, "player.js")],
         rows=_compared([run.summary for run in runs]),
         duration=max(float(panel.tables.ticks["time"][-1]) for panel in panels),
     )
