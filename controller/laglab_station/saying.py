@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 
 from laglab_control import Control
-from laglab_protocol import Command, Estimate, Message
+from laglab_protocol import Command, CommandLong, Estimate, Message
+from laglab_protocol.dialect.generated import laglab as mavlink
 
 
 def said(
@@ -23,3 +24,9 @@ def _estimate(tick: int, control: Control) -> list[Estimate]:
     (xx, xy, xt), (_, yy, yt), (_, _, tt) = P.tolist()
     x, y, theta = pose.tolist()
     return [Estimate(x, y, theta, xx, xy, xt, yy, yt, tt, tick)]
+
+
+def emergency_stop_for(system: int, component: int) -> CommandLong:
+    """What has this robot stand still for good."""
+    rest = (0.0,) * 6
+    return CommandLong(1.0, *rest, mavlink.MAV_CMD_DO_FLIGHTTERMINATION, system, component, 0)

@@ -32,7 +32,7 @@ from laglab_station.hearing import Came, Coming, echoes, measured, recalled
 from laglab_station.joining import Rest, observe, prior
 from laglab_station.recalling import Questions
 from laglab_station.report import Calibrated, StationReport
-from laglab_station.saying import said
+from laglab_station.saying import emergency_stop_for, said
 from laglab_station.warned import Warnings
 
 LONGEST_GAP = MEMORY
@@ -157,6 +157,18 @@ class Station:
         """End the run from this side: the frames to send."""
         self._outcome = End(self._tick or 0, reason)
         return self._framed([self._outcome])
+
+    def stop_robot(self) -> list[bytes]:
+        """The frames that have the robot stand still for good, said again until it does; nothing
+        before it was heard."""
+        if self._robot is None:
+            return []
+        return self._framed([emergency_stop_for(*self._robot)])
+
+    @property
+    def robot_stopped(self) -> bool:
+        """Whether the robot says that somebody stopped it for good."""
+        return self._warnings.emergency_stop
 
     def _hear(self, frame: Frame) -> list[Message]:
         sender = (frame.system, frame.component)

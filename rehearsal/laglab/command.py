@@ -20,6 +20,7 @@ from laglab.commands import (
     maps,
     protocol,
     replay,
+    report,
     reproduce,
     run,
     scenario,
@@ -33,6 +34,7 @@ from laglab.commands import (
 from laglab.commands.group import alone, group
 from laglab.errors import LaglabError, RunError, ScenarioError
 from laglab.interrupts import INTERRUPTED, on_interrupt
+from laglab.live import spelled_out
 from laglab.output import guarded
 from laglab.runs.errors import LINK_LOST, SIDE_ERRORS
 
@@ -66,6 +68,7 @@ app.command("scenarios")(scenarios.scenarios)
 app.command("estimators")(estimators.estimators)
 app.command("scenario")(scenario.scenario)
 app.command("figure")(figure.figure)
+app.command("report")(report.report)
 app.command("compare")(compare.compare)
 app.command("export")(export.export)
 app.command("animate")(animate.animate)
@@ -98,7 +101,14 @@ def run_command(arguments: list[str] | None) -> int:
 def _exit_code(arguments: list[str] | None) -> int:
     try:
         on_interrupt(signal.default_int_handler)
-        code = int(app(arguments, prog_name="laglab", standalone_mode=False) or 0)
+        code = int(
+            app(
+                spelled_out(sys.argv[1:] if arguments is None else arguments),
+                prog_name="laglab",
+                standalone_mode=False,
+            )
+            or 0
+        )
     except typer.TyperException as error:
         return _say(error.format_message(), error.exit_code)
     except LaglabError as error:

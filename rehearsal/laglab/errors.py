@@ -49,6 +49,12 @@ class PlaceError(LaglabError):
     exit_code = 2
 
 
+class LiveError(LaglabError):
+    """The live page cannot be where it is to be; nothing has run yet."""
+
+    exit_code = 2
+
+
 class RefusedError(LaglabError):
     """A side refused to begin; the text says why."""
 

@@ -18,6 +18,7 @@ class Need(Enum):
     PARQUET = "export", ("pyarrow",)
     MATLAB = "export", ("scipy",)
     BAGS = "export", ("mcap_ros2",)
+    SEEING = "see", ("bokeh",)
 
     def __init__(self, extra: str, modules: tuple[str, ...]) -> None:
         self.extra = extra
@@ -34,6 +35,7 @@ class Need(Enum):
     PARQUET,
     MATLAB,
     BAGS,
+    SEEING,
 ) = Need
 
 

@@ -12,6 +12,7 @@ import pytest
 import typer
 
 from laglab.command import app
+from laglab.live import spelled_out
 from laglab.results.shadows import COLUMNS
 from laglab_control import Erratum, Law, delay_margin
 from laglab_control.estimators.popf import delay_limit
@@ -152,7 +153,7 @@ def test_commands_in_the_pages_are_understood(command: str) -> None:
     """Read as typed, and not run: some of them take a minute."""
     group = typer.main.get_command(app)
     name, *arguments = shlex.split(command)
-    group.commands[name].make_context(name, arguments)  # type: ignore[attr-defined]
+    group.commands[name].make_context(name, spelled_out(arguments))  # type: ignore[attr-defined]
 
 
 def test_every_column_of_a_run_s_files_is_documented() -> None:

@@ -50,7 +50,7 @@ class Machine:
 
 
 def test_no_command_loads_what_it_does_not_need() -> None:
-    heavy = "fmpy", "matplotlib", "pyarrow", "scipy", "mcap"
+    heavy = "fmpy", "matplotlib", "pyarrow", "scipy", "mcap", "bokeh"
     asked = f"print([name for name in {heavy} if name in sys.modules])"
     script = [sys.executable, "-c", f"import sys, laglab.command; {asked}"]
     loaded = subprocess.run(script, capture_output=True, text=True, check=True)
@@ -68,6 +68,7 @@ def test_each_side_runs_where_only_what_it_needs_is_installed(
     assert not machine.has("matplotlib")
     assert "pip install 'laglab[gateway]'" in machine.refuses("gateway", "lab")
     assert "pip install 'laglab[run]'" in machine.refuses("run", "lab")
+    assert "pip install 'laglab[see]'" in machine.refuses("report", "runs/lab")
 
     ours = [sys.executable, "-m", "laglab", "gateway", *OPTIONS, "udpin://127.0.0.1:0"]
     with subprocess.Popen(ours, stderr=subprocess.PIPE, text=True) as gateway:

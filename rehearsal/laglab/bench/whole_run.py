@@ -6,7 +6,7 @@ from typing import NamedTuple
 from laglab.errors import RunError
 from laglab.runs.ending import Ending
 from laglab.runs.rehearse import Transport, rehearse_apart
-from laglab.runs.robot_side import robot_parameters
+from laglab.runs.robot_side import Setup, robot_parameters
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario, load
 from laglab_control import INITIAL_VARIANCE, StationConfig
@@ -56,16 +56,22 @@ def seconds_per_tick(transport: Transport, scenario: Scenario, directory: Path) 
     return _run(transport, scenario, directory).loop_seconds / scenario.must_end()
 
 
-def lateness(seconds: float, directory: Path) -> TimingReport:
-    """Of `laglab run lab --pace realtime` over UDP."""
-    scenario = load("lab", {"pace": "realtime", "duration": seconds})
-    timing = _run("udp", scenario, directory).timing
+def realtime_scenario(seconds: float) -> Scenario:
+    """`lab`, by the clock."""
+    return load("lab", {"pace": "realtime", "duration": seconds})
+
+
+def lateness(seconds: float, directory: Path, live: str | None = None) -> TimingReport:
+    """Of `laglab run lab --pace realtime` over UDP; `live` is how to call its live page."""
+    timing = _run("udp", realtime_scenario(seconds), directory, live).timing
     assert timing is not None, "it was paced by the clock"
     return timing
 
 
-def _run(transport: Transport, scenario: Scenario, directory: Path) -> Ending:
-    ending = rehearse_apart(scenario, transport, directory)
+def _run(
+    transport: Transport, scenario: Scenario, directory: Path, live: str | None = None
+) -> Ending:
+    ending = rehearse_apart(scenario, transport, directory, setup=Setup(live=live))
     if ending.outcome is None:
         raise RunError(f"the loop over {transport} ended early: {ending.problem}")
     return ending

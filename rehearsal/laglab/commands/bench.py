@@ -12,7 +12,7 @@ from laglab.bench import codec as codec_bench
 from laglab.bench import filter as filter_bench
 from laglab.bench.round_trip import Link
 from laglab.commands.group import group
-from laglab.extras import STEPPING, require
+from laglab.extras import SEEING, STEPPING, require
 from laglab.progress import status
 from laglab.results.whole import whole_file
 from laglab.results.writable import file_place
@@ -72,6 +72,20 @@ def loop(
     if "serial" in links:
         require_terminals("--link serial")
     _run(loop_bench.bench(ticks, realtime, links), rounds, json)
+
+
+@app.command("live")
+def live(
+    seconds: Annotated[float, typer.Option(min=1.0, help="Of each run, by the clock.")] = 5.0,
+    rounds: RoundsOption = 5,
+    json: JsonOption = None,
+) -> None:
+    """How late ticks begin with a live page, read by a hundred or not."""
+    require(STEPPING)
+    require(SEEING)
+    from laglab.bench import live as live_bench  # needs FMPy
+
+    _run(live_bench.bench(seconds), rounds, json)
 
 
 @app.command("study")

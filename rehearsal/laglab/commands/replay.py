@@ -8,10 +8,11 @@ from rich.console import Console
 
 from laglab.commands.figure import WidthOption
 from laglab.errors import ScenarioError
-from laglab.extras import DRAWING, require
+from laglab.extras import DRAWING, SEEING, require
 from laglab.results.figures import save
-from laglab.results.replaying import draw_replays, replays_table
-from laglab.results.run import SCENARIO_FILE
+from laglab.results.place import REPORT_FILE
+from laglab.results.replaying import draw_replays, replayed_run, replays_table
+from laglab.results.run import SCENARIO_FILE, Run
 from laglab.results.shadows import collected, kept_rows, shadow_rows
 from laglab.results.writable import folder_place
 from laglab.scenario import load
@@ -50,9 +51,14 @@ def replay(
         "replay"
     ),
     width: WidthOption = "two",
+    report: Annotated[
+        bool, typer.Option("--report", help="Leave report.html, too, of the run with these.")
+    ] = False,
 ) -> None:
     """Estimate again from the log of a run, simulated or real."""
     require(DRAWING)
+    if report:
+        require(SEEING)
     overrides = {} if p0 is None else {"estimator.initial_covariance": p0}
     told = load(scenario or str(tlog.parent / SCENARIO_FILE), overrides)
     session = list(read_session(tlog))
@@ -66,5 +72,13 @@ def replay(
         name: collected(kept_rows(rows, directory / f"{name}.csv")) for name, rows in asked.items()
     }
     save(draw_replays(told, session, replays, trace, width), directory / "replay.png")
+    if report:
+        _report(replayed_run(tlog.parent, replays), directory)
     Console().print(replays_table(replays, trace))
     Console().print(f"results in {out}", highlight=False, soft_wrap=True)
+
+
+def _report(run: Run, directory: Path) -> None:
+    from laglab.results.report import save_report
+
+    save_report([run], directory / REPORT_FILE)

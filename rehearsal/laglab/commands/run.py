@@ -1,14 +1,16 @@
 """`laglab run`."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from laglab.commands.live import LiveOption, OpenOption, shown_live
 from laglab.commands.options import on_scenario
 from laglab.commands.verdict import conclude
 from laglab.errors import ScenarioError
-from laglab.extras import REHEARSING, require
+from laglab.extras import REHEARSING, SEEING, require
 from laglab.progress import progress_of
 from laglab.results.complete import Way
 from laglab.results.place import place
@@ -41,6 +43,9 @@ OutOption = Annotated[
 ForceOption = Annotated[
     bool, typer.Option("--force", help="Take the place of another run's results in --out.")
 ]
+ReportOption = Annotated[
+    bool, typer.Option("--report", help="Leave report.html, too; `laglab report` says what it is.")
+]
 
 
 @on_scenario
@@ -54,18 +59,25 @@ def run(
     key: KeyOption = None,
     plant: PlantOption = None,
     plant_key: PlantKeyOption = None,
+    report: ReportOption = False,
+    live: LiveOption = None,
+    open_: OpenOption = False,
 ) -> None:
     """Rehearse SCENARIO: robot, delayed link and controller.
 
     Two processes, or one; the records, and the verdict.
     """
     require(REHEARSING)
+    if report:
+        require(SEEING)
     if plant is not None and transport == "inline":
         raise ScenarioError("--plant: a real robot does not wait: take --transport udp or serial")
     setup = Setup(plant, key, plant_key=plant_key)
     setup.check()
-    directory = place(scenario, out, force)
-    with progress_of(scenario) as told:
-        ending = run_into(directory, scenario, transport, told, setup)
     way = Way("both", transport, plant or "fmu")
-    conclude(scenario, way, ending, directory)
+    with shown_live(scenario, way, live, open_) as page:
+        directory = place(scenario, out, force)
+        with progress_of(scenario) as told:
+            setup = replace(setup, live=page.line if page else None)
+            ending = run_into(directory, scenario, transport, told, setup)
+        conclude(scenario, way, ending, directory, report, page)

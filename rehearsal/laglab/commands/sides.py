@@ -8,10 +8,19 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from laglab.commands.live import LiveOption, OpenOption, shown_live
 from laglab.commands.options import on_scenario
-from laglab.commands.run import ForceOption, KeyOption, OutOption, PlantKeyOption, PlantOption
+from laglab.commands.run import (
+    ForceOption,
+    KeyOption,
+    OutOption,
+    PlantKeyOption,
+    PlantOption,
+    ReportOption,
+)
 from laglab.commands.verdict import conclude
-from laglab.extras import STEPPING, require
+from laglab.extras import SEEING, STEPPING, require
+from laglab.live import fed, watched_station
 from laglab.progress import progress_of
 from laglab.results.complete import Way
 from laglab.results.place import place
@@ -76,23 +85,35 @@ def gateway(
     disarmed: Annotated[
         bool, typer.Option("--disarmed", help="Stand still until a ground station arms the robot.")
     ] = False,
+    report: ReportOption = False,
+    live: LiveOption = None,
+    open_: OpenOption = False,
 ) -> None:
     """Be the robot's side of SCENARIO, for a controller elsewhere."""
     if plant is None:
         require(STEPPING)
+    if report:
+        require(SEEING)
     with (
+        ExitStack() as stack,
         open_robot(scenario, Setup(plant, key, not disarmed, unsigned, plant_key)) as robot,
         open_endpoint(endpoint) as link,
         _opened(watch or []) as watchers,
     ):
         for each in (link, *watchers):
             refuse_open_door(each, key, unsigned)
+        way = Way("robot", link.name, plant or "fmu")
+        page = stack.enter_context(shown_live(scenario, way, live, open_))
         directory = place(scenario, out, force)
         _say_whom_we_wait_for("the controller", link)
         for each in watchers:
             _say(f"a ground station may look on at {each.name}")
-        with progress_of(scenario) as told:
-            recorder, now = watched(FileRecorder(directory), scenario, plant)
+        line = page.line if page else None
+        with (
+            progress_of(scenario) as told,
+            fed(FileRecorder(directory), line, robot.controls) as files,
+        ):
+            recorder, now = watched(files, scenario, plant)
             around = Surroundings(
                 Listener(link, robot.codec.receiver),
                 recorder,
@@ -102,8 +123,7 @@ def gateway(
                 _warn,
             )
             ending = serve_alone(robot, around)
-    way = Way("robot", link.name, plant or "fmu")
-    conclude(scenario, way, ending, directory)
+        conclude(scenario, way, ending, directory, report, page)
 
 
 @contextmanager
@@ -121,16 +141,24 @@ def controller(
     out: OutOption = None,
     force: ForceOption = False,
     key: KeyOption = None,
+    report: ReportOption = False,
+    live: LiveOption = None,
+    open_: OpenOption = False,
 ) -> None:
     """Be the remote station of SCENARIO, for a robot elsewhere."""
+    if report:
+        require(SEEING)
     with open_endpoint(endpoint) as link, open_station(scenario, key) as (station, receiver):
-        directory = place(scenario, out, force, suffix="-station")
-        _say_whom_we_wait_for("the robot", link)
-        with progress_of(scenario) as told:
-            record = _station_record(scenario, directory, told)
-            listener = Listener(link, receiver)
-            ending = answer_alone(station, listener, scenario.silence_timeout, record)
-    conclude(scenario, Way("station", link.name, "unknown"), ending, directory)
+        way = Way("station", link.name, "unknown")
+        with shown_live(scenario, way, live, open_) as page:
+            directory = place(scenario, out, force, suffix="-station")
+            _say_whom_we_wait_for("the robot", link)
+            with progress_of(scenario) as told:
+                record = _station_record(scenario, directory, told)
+                onlooker = watched_station(record, page.line if page else None, station, link)
+                listener = Listener(link, receiver)
+                ending = answer_alone(station, listener, scenario.silence_timeout, onlooker)
+            conclude(scenario, way, ending, directory, report, page)
 
 
 def _station_record(scenario: Scenario, directory: Path, told: Told) -> StationRecord:

@@ -8,21 +8,35 @@ import typer
 from rich.console import Console
 
 from laglab.errors import RefusedError, ResultsError, RunError
+from laglab.live import LivePage
 from laglab.results.complete import Way, complete
 from laglab.results.figures import FIGURE_FILE
+from laglab.results.place import REPORT_FILE
 from laglab.results.run import Run
 from laglab.results.table import results_table, warnings
 from laglab.runs.ending import Ending
 from laglab.scenario import Scenario
 
 
-def conclude(scenario: Scenario, way: Way, ending: Ending, directory: Path) -> NoReturn:
+def conclude(
+    scenario: Scenario,
+    way: Way,
+    ending: Ending,
+    directory: Path,
+    report: bool = False,
+    page: LivePage | None = None,
+) -> NoReturn:
     """Say at once what broke, if something did; write the results and show them; end with the
     run's exit code. Raises ResultsError, and KeyboardInterrupt for a run that never began."""
     if ending.problem:
         print(f"laglab: {ending.problem}", file=sys.stderr, flush=True)
+        _tell(page, ending.problem)
     try:
-        _show(complete(scenario, way, ending, directory))
+        run = complete(scenario, way, ending, directory)
+        _tell(page, run.summary.verdict)
+        _show(run)
+        if report:
+            report_on(run)
     except (RefusedError, RunError):
         if not ending.problem:
             raise
@@ -31,6 +45,20 @@ def conclude(scenario: Scenario, way: Way, ending: Ending, directory: Path) -> N
             raise
         print(f"warning: {error}", file=sys.stderr)
     raise typer.Exit(ending.exit_code)
+
+
+def _tell(page: LivePage | None, verdict: str) -> None:
+    if page is not None:
+        page.over(verdict)
+
+
+def report_on(run: Run) -> None:
+    """Leave a report beside the run's other files. Needs bokeh."""
+    from laglab.results.report import save_report
+
+    if run.directory:
+        save_report([run], run.directory / REPORT_FILE)
+        Console().print(f"report in {run.directory / REPORT_FILE}", highlight=False, soft_wrap=True)
 
 
 def _show(run: Run) -> None:

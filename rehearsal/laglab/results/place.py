@@ -12,7 +12,8 @@ from laglab.results.writable import folder_place
 from laglab.scenario import Scenario
 from laglab_gateway import ROWS, TLOG_FILE, TRACE_FILE
 
-OURS = (SCENARIO_FILE, SUMMARY_FILE, TRACE_FILE, TLOG_FILE, *ROWS, FIGURE_FILE)
+REPORT_FILE = "report.html"
+OURS = (SCENARIO_FILE, SUMMARY_FILE, TRACE_FILE, TLOG_FILE, *ROWS, FIGURE_FILE, REPORT_FILE)
 
 
 def place(scenario: Scenario, out: Path | None, force: bool = False, suffix: str = "") -> Path:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 from rich.table import Table
 
+from laglab.results.columns import read_columns
 from laglab.results.figures import INCHES, Width, legend, line, printed, sheet
 from laglab.results.figures.panels import (
     COMPONENTS,
@@ -19,10 +21,11 @@ from laglab.results.figures.panels import (
     symmetric,
 )
 from laglab.results.numbers import deviation, robot_pose
+from laglab.results.run import Kept, Run, open_run
 from laglab.results.shadows import Shadow
 from laglab.scenario import Scenario
 from laglab.tables import plain_table
-from laglab_gateway import Trace
+from laglab_gateway import ROWS, Trace
 from laglab_protocol import Measurement
 from laglab_station import SessionTick
 
@@ -65,6 +68,18 @@ def replays_table(replays: Replays, trace: Trace | None) -> Table:
         cells = [name, str(len(replayed["tick"])), _spelled(estimates(replayed)[-1].tolist())]
         table.add_row(*cells, *([_spelled(rms_deviation(replayed, trace))] if trace else []))
     return table
+
+
+def replayed_run(directory: Path, replays: Replays) -> Run:
+    """The run that left the log, with these estimators as its shadows.
+
+    Raises: ResultsError, when the log stands without its run.
+    """
+    run = open_run(directory)
+    tables = {name: read_columns(directory / name, kind) for name, kind in ROWS.items()}
+    estimator = run.scenario.estimator.model_copy(update={"compare": tuple(replays)})
+    scenario = run.scenario.model_copy(update={"estimator": estimator})
+    return Run(scenario, run.summary, directory, Kept(run.trace, tables, replays))
 
 
 def _spelled(numbers: Sequence[float]) -> str:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from laglab.results.heard import heard_ticks
 from laglab.results.station_glance import StationGlance
-from laglab_gateway import TLOG_FILE, FileRecorder, TraceRow
+from laglab_gateway import TLOG_FILE, FileRecorder, Recorder, TraceRow
 from laglab_station import Onlooker, SessionTick, read_session
 
 LATEST = 1024
@@ -48,23 +48,38 @@ class StationRecord(Onlooker):
         """What was heard, once more as a run's tables. Raises TraceError."""
         try:
             self._recorder.flush()
-            session = self._noted(read_session(self._directory / TLOG_FILE))
-            for row in station_rows(session, self._sample_time):
-                self._recorder.row(row)
-                if row.tick % LATEST == 0:
-                    self._recorder.flush()
+            session = read_session(self._directory / TLOG_FILE)
+            record_session(session, self._sample_time, self._recorder)
         finally:
             self._recorder.close()
 
-    def _noted(self, session: Iterable[SessionTick]) -> Iterator[SessionTick]:
-        """The same, its arrivals and claims recorded as it goes by."""
-        for heard, arrivals, claims in heard_ticks(session, self._sample_time):
-            self._recorder.arrivals(arrivals)
-            self._recorder.claims(claims)
-            yield heard
+
+def record_session(
+    session: Iterable[SessionTick], sample_time: float, recorder: Recorder, latest: int = LATEST
+) -> None:
+    """What was heard, once more as a run's tables; a row waits `latest` ticks for its measurement.
+
+    Raises: TraceError, as the recorder does.
+    """
+    for row in station_rows(_noted(session, sample_time, recorder), sample_time, latest):
+        recorder.row(row)
+        if row.tick % LATEST == 0:
+            recorder.flush()
 
 
-def station_rows(session: Iterable[SessionTick], sample_time: float) -> Iterator[TraceRow]:
+def _noted(
+    session: Iterable[SessionTick], sample_time: float, recorder: Recorder
+) -> Iterator[SessionTick]:
+    """The same, its arrivals and claims recorded as it goes by."""
+    for heard, arrivals, claims in heard_ticks(session, sample_time):
+        recorder.arrivals(arrivals)
+        recorder.claims(claims)
+        yield heard
+
+
+def station_rows(
+    session: Iterable[SessionTick], sample_time: float, latest: int = LATEST
+) -> Iterator[TraceRow]:
     """A row a tick heard: no true pose; the measurement sampled then and the command in force from
     then on, however late the one came and the other was told of."""
     waiting: dict[int, Cells] = {}
@@ -78,7 +93,7 @@ def station_rows(session: Iterable[SessionTick], sample_time: float) -> Iterator
                 waiting[message.tick] |= {"x_meas": x, "y_meas": y, "theta_meas": theta}
             if message.tick - 1 in waiting:
                 waiting[message.tick - 1] |= {"v": message.v, "omega": message.omega}
-        while next(iter(waiting)) < heard.tick - LATEST:
+        while next(iter(waiting)) < heard.tick - latest:
             tick = next(iter(waiting))
             yield _row(tick, first, sample_time, waiting.pop(tick))
     for tick, cells in waiting.items():

@@ -16,12 +16,13 @@ def results_table(summary: Summary) -> Table:
     table = plain_table(headed=False)
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold")
-    for name, value in _rows(summary).items():
+    for name, value in summary_rows(summary).items():
         table.add_row(name, value)
     return table
 
 
-def _rows(summary: Summary) -> dict[str, str]:
+def summary_rows(summary: Summary) -> dict[str, str]:
+    """Name → value, as far as there is something to say."""
     seen = " (measured)" if summary.pose == "measured" else ""
     estimated = summary.compare or {summary.estimator: summary.rms_error}
     final = summary.final

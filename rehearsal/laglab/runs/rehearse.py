@@ -9,6 +9,7 @@ from queue import Empty, Queue
 from time import monotonic
 from typing import Literal
 
+from laglab.live import fed
 from laglab.runs.child import LOOK_UP, Child, Inbox, Letter, started
 from laglab.runs.clock import LoopClock
 from laglab.runs.ending import Ending
@@ -62,11 +63,12 @@ def rehearse_inline(
         with (
             open_robot(scenario, setup) as robot,
             Codec(STATION_SYSTEM, STATION_COMPONENT, setup.key) as codec,
+            fed(recorder, setup.live, robot.controls) as told,
         ):
             station = make_station(scenario, codec.sender, controller)
             link = InlineLink(station, codec.receiver)
             listener = Listener(link, robot.codec.receiver)
-            around = Surroundings(listener, recorder, progress=clock, warn=warnings.append)
+            around = Surroundings(listener, told, progress=clock, warn=warnings.append)
             with short_pauses():
                 served = robot.serve(around)
     except SIDE_ERRORS as error:
@@ -97,7 +99,9 @@ def rehearse_apart(
     setup = setup or Setup()
     key, plant_key = (None if each is None else str(each) for each in (setup.key, setup.plant_key))
     with _gateway_url(transport) as url:
-        order = Order(scenario.to_toml(), url, str(directory), setup.plant, key, plant_key)
+        order = Order(
+            scenario.to_toml(), url, str(directory), setup.plant, key, plant_key, setup.live
+        )
         inbox: Inbox = Queue()
         with started("gateway", "laglab.runs.sides:robot_side", order, inbox) as gateway:
             return _Rehearsal(gateway, inbox, scenario, key, progress).follow()

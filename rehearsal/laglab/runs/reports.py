@@ -20,6 +20,8 @@ class Order(Struct, frozen=True):
     plant: str | None = None
     key: str | None = None
     plant_key: str | None = None
+    live: str | None = None
+    """How to call the live page, if there is one."""
 
 
 class Listening(Struct, frozen=True, tag=True):
@@ -73,10 +75,17 @@ class Computed(Struct, frozen=True, tag=True):
     """Pickled."""
 
 
+class Showing(Struct, frozen=True, tag=True):
+    """The live page is there: at which port, and how the loop is to call it."""
+
+    port: int
+    line: str
+
+
 class Ended(Struct, frozen=True, tag=True):
     """The process is gone, and how; always the last that is heard of it."""
 
     how: str
 
 
-Report = Listening | Progress | Warned | Finished | Answered | Failed | Computed | Ended
+Report = Listening | Progress | Warned | Finished | Answered | Failed | Computed | Showing | Ended

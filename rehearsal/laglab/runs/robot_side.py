@@ -11,6 +11,7 @@ import numpy as np
 
 import laglab_fmu
 from laglab.errors import ScenarioError
+from laglab.live import Controls
 from laglab.runs.hand import MovedByHand
 from laglab.runs.plant import FmuPlant
 from laglab.scenario import Scenario
@@ -71,6 +72,8 @@ class Setup:
     need no key."""
     plant_key: Path | None = None
     """The file of the key that signs every frame on the real robot's own link."""
+    live: str | None = None
+    """How the loop calls the live page, if there is one."""
 
     def check(self) -> None:
         """What can be known to be wrong before anything runs.
@@ -190,6 +193,12 @@ class OpenRobot:
     """Whether those who watch need no key."""
     has_key: bool
     """Whether who speaks can be told apart from strangers."""
+
+    @property
+    def controls(self) -> Controls:
+        """What somebody at a live page can do."""
+        arming = self.services.arming
+        return Controls(arming.stop, lambda: arming.stopped)
 
     def watch(self, endpoints: Sequence[Endpoint]) -> Watch:
         """Those who look on, each spoken to by a sender and a receiver of its own."""

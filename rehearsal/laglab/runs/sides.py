@@ -3,6 +3,7 @@
 from contextlib import closing
 from pathlib import Path
 
+from laglab.live import fed
 from laglab.runs.child import Tell
 from laglab.runs.clock import LoopClock
 from laglab.runs.errors import LINK_LOST, SIDE_ERRORS
@@ -36,12 +37,13 @@ def robot_side(order: Order, tell: Tell) -> None:
         with (
             open_robot(scenario, _setup(order)) as robot,
             closing(FileRecorder(Path(order.directory))) as files,
+            fed(files, order.live, robot.controls) as all_told,
             open_endpoint(order.url) as endpoint,
             short_pauses(),
         ):
             tell(Listening(endpoint.name))
             begun = True
-            recorder, now = watched(files, scenario, order.plant)
+            recorder, now = watched(all_told, scenario, order.plant)
             clock = LoopClock(lambda tick: tell(Progress(tick, clock.seconds, now())))
             served = robot.serve(
                 Surroundings(

@@ -1,0 +1,45 @@
+"""`--live`: a page that follows the run, on any command that makes one."""
+
+import webbrowser
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from laglab.extras import SEEING, require
+from laglab.live import LivePage, live_page, place_of
+from laglab.results.complete import Way
+from laglab.scenario import Scenario
+
+LiveOption = Annotated[
+    str | None,
+    typer.Option(
+        "--live",
+        metavar="[[HOST:]PORT]",
+        help="Follow the run in a browser, and stop it from there; on loopback, at a port from "
+        "the system, unless told otherwise.",
+    ),
+]
+OpenOption = Annotated[bool, typer.Option("--open", help="Open the live page in a browser.")]
+
+
+@contextmanager
+def shown_live(
+    scenario: Scenario, way: Way, live: str | None, open_: bool
+) -> Iterator[LivePage | None]:
+    """The page, its address told; None where nobody asked for one. Raises LiveError."""
+    if live is None and not open_:
+        yield None
+        return
+    require(SEEING)
+    origin = f"Side: {way.side}; over {way.transport}; plant {way.plant}; seed {scenario.seed}."
+    with live_page(scenario, place_of(live or "0"), origin, way.side == "station") as page:
+        errors = Console(stderr=True)
+        if warning := page.warning:
+            errors.print(f"warning: {warning}", highlight=False, soft_wrap=True)
+        errors.print(f"live at {page.address}", highlight=False, soft_wrap=True)
+        if open_:
+            webbrowser.open(page.address)
+        yield page

@@ -1,0 +1,117 @@
+"""The loop's side of a live page: a recorder that tells, and hears two orders."""
+
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from time import monotonic
+from typing import NamedTuple, TypeVar
+
+from laglab.live.messages import Caller, Line, Rows
+from laglab_gateway import (
+    ArrivalRow,
+    ClaimRow,
+    LinkRow,
+    Recorder,
+    Tapped,
+    TimingRow,
+    TraceRow,
+)
+
+PERIOD = 0.05
+"""[s] between two datagrams."""
+MOST_TICKS, MOST_OTHERS = 100, 300
+"""Rows of a datagram."""
+
+STATUSTEXT = (253).to_bytes(3, "little")
+
+T = TypeVar("T")
+
+
+class Controls(NamedTuple):
+    """The only things that somebody at the page can do."""
+
+    stop: Callable[[], None]
+    """Stop the robot for good."""
+    stopped: Callable[[], bool]
+    """Whether it is."""
+
+
+class Feed(Recorder):
+    """Tells the page's process what a recorder is told, some twenty times a second."""
+
+    def __init__(self, line: Line, controls: Controls) -> None:
+        self._caller = Caller(line)
+        self._controls = controls
+        self._rows = Rows()
+        self._told = 0.0
+
+    def row(self, row: TraceRow) -> None:
+        self._rows.trace.append(row)
+
+    def arrivals(self, rows: Iterable[ArrivalRow]) -> None:
+        self._rows.arrivals += rows
+
+    def claims(self, rows: Iterable[ClaimRow]) -> None:
+        self._rows.claims += rows
+
+    def link(self, rows: Iterable[LinkRow]) -> None:
+        self._rows.link += rows
+
+    def frames(self, time_us: int, frames: Iterable[bytes]) -> None:
+        del time_us  # the page's process has the time of the last tick
+        self._rows.frames += filter(_is_text, frames)
+
+    def timing(self, row: TimingRow) -> None:
+        self._rows.timing.append(row)
+
+    def said(self, frames: Iterable[bytes]) -> None:
+        """Of a station alone: all that it heard and said."""
+        self._rows.frames += frames
+
+    def flush(self) -> None:
+        """Tell, if it is time to. Raises KeyboardInterrupt when somebody at the page ends the run:
+        that is what it amounts to."""
+        now = monotonic()
+        if now - self._told < PERIOD:
+            return
+        self._told = now
+        self._tell()
+        match self._caller.heard():
+            case "stop" if not self._controls.stopped():
+                self._controls.stop()
+            case "end":
+                raise KeyboardInterrupt
+
+    def close(self) -> None:
+        self._tell()
+        self._caller.close()
+
+    def _tell(self) -> None:
+        rows, self._rows = self._rows, Rows()
+        every = -(-len(rows.trace) // MOST_TICKS) or 1
+        rows.trace, rows.claims = _last(rows.trace[::every]), _last(rows.claims[::every])
+        rows.arrivals, rows.timing = _last(rows.arrivals[::every]), _last(rows.timing[::every])
+        rows.link = _last([row for row in rows.link if row.fate != "delivered"])
+        rows.stopped = self._controls.stopped()
+        self._caller.say(rows)
+
+
+def _is_text(frame: bytes) -> bool:
+    """By its header: nothing is decoded in the loop."""
+    return frame[:1] == b"\xfd" and frame[7:10] == STATUSTEXT
+
+
+def _last(rows: list[T]) -> list[T]:
+    return rows[-MOST_OTHERS:]
+
+
+@contextmanager
+def fed(recorder: Recorder, line: str | None, controls: Controls) -> Iterator[Recorder]:
+    """The recorder, tapped for a live page if there is one; the tap is gone at the end."""
+    if line is None:
+        yield recorder
+        return
+    feed = Feed(Line.read(line), controls)
+    try:
+        yield Tapped(recorder, feed)
+    finally:
+        feed.close()

@@ -1,0 +1,37 @@
+"""The live page: the report's plots, empty, and a script that fills them."""
+
+from dataclasses import replace
+
+from laglab.live.messages import Rows
+from laglab.live.stream import tables_in
+from laglab.results.report.page import INSIDE, Page, Panel, html, text_of
+from laglab.scenario import Scenario
+
+SELF = INSIDE | {"connect-src": "'self'"}
+"""It also calls whoever served it."""
+
+
+def page_html(scenario: Scenario, origin: str, controls: bool) -> str:
+    """The whole page; with the buttons for who may press them."""
+    panel = Panel(
+        name=scenario.name,
+        scenario=scenario,
+        tables=tables_in(Rows(), scenario),
+        measured=False,
+        timed=scenario.pace == "realtime",
+        origin=origin,
+    )
+    page = Page(
+        title=f"{scenario.name}, live: {scenario.gist}",
+        scripts=[text_of("laglab.live", "live.js")],
+        live=True,
+        controls=controls,
+        policy=SELF,
+    )
+    return html(page, [_without_shadows(panel)])
+
+
+def _without_shadows(panel: Panel) -> Panel:
+    """Those estimate when the run is over."""
+    estimator = panel.scenario.estimator.model_copy(update={"compare": ()})
+    return replace(panel, scenario=panel.scenario.model_copy(update={"estimator": estimator}))

@@ -1,0 +1,153 @@
+"""One HTML file of everything: what it shows, the scripts that move it, bokeh itself."""
+
+import platform
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib.metadata import version
+from importlib.resources import files
+
+import jinja2
+import msgspec
+from bokeh.embed import components
+from bokeh.model import Model
+from bokeh.resources import Resources
+from markupsafe import Markup
+from msgspec import Struct
+
+from laglab.results.report.plane import Plane, path_plot
+from laglab.results.report.plots import Axes, Plots, time_plots
+from laglab.results.report.sources import sources_of
+from laglab.results.report.tables import Tables
+from laglab.scenario import Scenario
+from laglab.version import laglab_version
+
+HERE = "laglab.results.report"
+INSIDE = {
+    "default-src": "'none'",
+    "script-src": "'unsafe-inline'",
+    "style-src": "'unsafe-inline'",
+    "img-src": "data: blob:",
+    "connect-src": "'none'",
+}
+"""What a page may load: nothing that is not in it."""
+
+
+class Told(Struct, frozen=True):
+    """What the page's script is told of a run."""
+
+    sample_time: float
+    command_delay: int
+    track: float
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One run of a page: its plots, and what is said of it."""
+
+    name: str
+    scenario: Scenario
+    tables: Tables
+    measured: bool
+    timed: bool
+    origin: str
+    verdict: str = ""
+    mood: str = ""
+    notices: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Page:
+    """What a page says besides its panels, and the scripts that move it."""
+
+    title: str
+    scripts: Sequence[str]
+    """Their texts."""
+    rows: Sequence[tuple[str, Sequence[str]]] = ()
+    duration: float = 0.0
+    live: bool = False
+    controls: bool = False
+    policy: Mapping[str, str] = field(default_factory=lambda: INSIDE)
+
+
+def html(page: Page, panels: Sequence[Panel]) -> str:
+    """The whole file."""
+    axes, plane, high = Axes(), Plane(), 600 if len(panels) == 1 else 430
+    drawn = [_plots(panel, number, axes, plane, high) for number, panel in enumerate(panels)]
+    keyed: dict[str, Model] = {
+        f"{i} {kind}": plot for i, plots in enumerate(drawn) for kind, plot in plots.items()
+    }
+    drawing, divs = components(dict(keyed))
+    kinds = list(dict.fromkeys(kind for plots in drawn for kind in plots))
+    runs = [
+        {
+            "name": panel.name,
+            "verdict": panel.verdict,
+            "mood": panel.mood,
+            "notices": panel.notices,
+            "origin": panel.origin,
+            "scenario": panel.scenario.to_toml(),
+            "plots": {kind: Markup(divs[f"{i} {kind}"]) for kind in drawn[i]},
+        }
+        for i, panel in enumerate(panels)
+    ]
+    return _template().render(
+        title=page.title,
+        live=page.live,
+        controls=page.controls,
+        duration=page.duration,
+        rows=page.rows,
+        policy="; ".join(f"{what} {where}" for what, where in page.policy.items()),
+        style=Markup(text_of(HERE, "page.css")),
+        runs=runs,
+        kinds=kinds,
+        made_by=_made_by(),
+        settings=_settings(panels),
+        scripts=Markup(
+            "\n".join(
+                [*_bokeh(), drawing, *map(_tagged, (text_of(HERE, "robot.js"), *page.scripts))]
+            )
+        ),
+    )
+
+
+def _plots(panel: Panel, number: int, axes: Axes, plane: Plane, high: int) -> Plots:
+    sources = sources_of(panel.tables, number)
+    path = path_plot(sources, panel.scenario, plane, panel.measured, high)
+    return {"path": path} | time_plots(sources, panel.scenario, axes, panel.timed)
+
+
+def _settings(panels: Sequence[Panel]) -> Markup:
+    told = [
+        Told(
+            panel.scenario.sample_time,
+            panel.scenario.link.command_delay,
+            panel.scenario.plant.track,
+        )
+        for panel in panels
+    ]
+    return Markup(msgspec.json.encode({"runs": told}).decode())
+
+
+def _template() -> jinja2.Template:
+    return jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(
+        text_of(HERE, "page.html")
+    )
+
+
+def text_of(package: str, name: str) -> str:
+    """The text of a file that lies beside our modules."""
+    return (files(package) / name).read_text(encoding="utf-8")
+
+
+def _tagged(text: str) -> str:
+    return f"<script>{text}</script>"
+
+
+def _bokeh() -> list[str]:
+    inline = Resources(mode="inline", components=["bokeh"], log_level="error")
+    return [_tagged(text) for text in inline.js_raw]
+
+
+def _made_by() -> str:
+    packages = ", ".join(f"{name} {version(name)}" for name in ("numpy", "bokeh"))
+    return f"Page by laglab {laglab_version()}, Python {platform.python_version()}, {packages}."

@@ -1,0 +1,271 @@
+"""The plots of a page over time: all share one axis of time, each kind one axis of its own."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from bokeh.models import (
+    CDSView,
+    DataRange1d,
+    FactorRange,
+    GroupFilter,
+    HoverTool,
+    InversionFilter,
+    UnionFilter,
+)
+from bokeh.models.annotations import BoxAnnotation, Legend, Span, Title
+from bokeh.models.renderers import GlyphRenderer
+from bokeh.plotting import figure
+
+from laglab.results.report.silences import Silence, silences
+from laglab.results.report.sources import Sources
+from laglab.results.report.tables import LANES
+from laglab.scenario import Scenario
+
+BLACK, BLUE, RED, GREEN, GREY, PURPLE = (
+    "#222222",
+    "#0072B2",
+    "#D55E00",
+    "#009E73",
+    "#8c8c8c",
+    "#9c4a86",
+)
+OTHERS = (PURPLE, GREEN, "#E69F00", "#56B4E9")
+"""Colours that the colour-blind can tell apart (M. Okabe and K. Ito, 2008)."""
+DASHES = ("dashed", "dotdash", "dotted", "dashdot")
+CAUSES = {
+    "lost": ("x", RED),
+    "burst": ("square", PURPLE),
+    "outage": ("circle", GREY),
+    "corrupted": ("triangle", GREEN),
+    "queue-full": ("inverted_triangle", BLUE),
+}
+"""Of a lost frame: its marker and colour."""
+TOOLS = "xpan,box_zoom,xwheel_zoom,reset,save"
+HEIGHT = 210
+
+
+@dataclass
+class Axes:
+    """What the runs of a page share: the time, and of each kind of plot what it shows."""
+
+    time: DataRange1d = field(default_factory=lambda: DataRange1d(range_padding=0.01))
+    of: dict[str, DataRange1d] = field(default_factory=dict)
+
+    def values(self, kind: str) -> DataRange1d:
+        """The axis of all plots of this kind."""
+        return self.of.setdefault(kind, DataRange1d(only_visible=True))
+
+
+class Line(NamedTuple):
+    """A column over time."""
+
+    column: str
+    label: str
+    color: str
+    dash: str = "solid"
+    step: bool = False
+    width: float = 1.6
+
+
+Plots = dict[str, figure]
+"""By kind, in the order in which they stand on the page."""
+
+
+def time_plots(sources: Sources, scenario: Scenario, axes: Axes, timed: bool) -> Plots:
+    """Errors, heading, speeds, link; how late ticks began, if they were `timed`."""
+    shadows = scenario.estimator.compare
+    plots = {
+        f"{axis} error": _error_plot(sources, axes, axis, label, unit, shadows)
+        for axis, label, unit in (("x", "x", "m"), ("y", "y", "m"), ("theta", "θ", "rad"))
+    }
+    plots["goal"] = _lines(
+        sources,
+        axes,
+        "distance to the goal ρ [m], heading error [rad]",
+        [
+            Line("rho", "ρ", BLACK),
+            Line("turn", "heading error", BLUE, "dashed"),
+        ],
+    )
+    plots["v"] = _speed_plot(sources, axes, "v", "v [m/s]")
+    plots["omega"] = _speed_plot(sources, axes, "omega", "ω [rad/s]")
+    plots["delays"] = _delay_plot(sources, axes)
+    plots["marks"] = _mark_plot(sources, axes)
+    if timed:
+        plots["timing"] = _timing_plot(sources, axes)
+    for plot in plots.values():
+        _mark_times(plot, sources, silences(scenario))
+    return plots
+
+
+def _plot(axes: Axes, title: str, values: DataRange1d | FactorRange, height: int) -> figure:
+    plot = figure(
+        title=heading(title),
+        height=height,
+        sizing_mode="stretch_width",
+        tools=TOOLS,
+        active_drag="box_zoom",
+        x_range=axes.time,
+        y_range=values,
+        min_border_left=84,
+        min_border_right=8,
+        output_backend="canvas",
+    )
+    return dressed(plot)
+
+
+def heading(text: str) -> Title:
+    """Of a plot."""
+    return Title(text=text, text_font_size="13px", text_font_style="normal", text_color=BLACK)
+
+
+def dressed(plot: figure) -> figure:
+    """In the page's style."""
+    plot.toolbar.logo = None
+    plot.toolbar.autohide = True
+    plot.xgrid.grid_line_color = plot.ygrid.grid_line_color = "#e8e8e8"
+    plot.outline_line_color = "#cccccc"
+    for axis in plot.axis:
+        axis.axis_line_color = axis.major_tick_line_color = "#999999"
+        axis.minor_tick_line_color = None
+        axis.major_label_text_font_size = "11px"
+    return plot
+
+
+def legend_above(plot: figure) -> None:
+    """One line of it, out of the data's way; a click hides a curve."""
+    legend: Legend = plot.legend[0]
+    legend.orientation = "horizontal"
+    legend.location = "top_left"
+    legend.click_policy = "hide"
+    legend.label_text_font_size = "11px"
+    legend.spacing = 10
+    legend.border_line_color = None
+    legend.background_fill_alpha = 0.0
+    plot.add_layout(legend, "above")
+
+
+def _lines(sources: Sources, axes: Axes, title: str, lines: Sequence[Line]) -> figure:
+    plot = _plot(axes, title, axes.values(title), HEIGHT)
+    for line in lines:
+        _add(plot, sources, line)
+    legend_above(plot)
+    return plot
+
+
+def _add(plot: figure, sources: Sources, line: Line) -> None:
+    look: dict[str, Any] = {
+        "source": sources.ticks,
+        "color": line.color,
+        "line_dash": line.dash,
+        "line_width": line.width,
+        "legend_label": line.label,
+    }
+    drawn: GlyphRenderer[Any]
+    if line.step:
+        drawn = plot.step("time", line.column, mode="after", **look)
+    else:
+        drawn = plot.line("time", line.column, **look)
+    tips = [("t", "@time{0.00} s"), (line.label, f"@{{{line.column}}}{{0.000}}")]
+    plot.add_tools(HoverTool(renderers=[drawn], tooltips=tips, mode="vline", visible=False))
+
+
+def _error_plot(
+    sources: Sources, axes: Axes, axis: str, label: str, unit: str, shadows: Sequence[str]
+) -> figure:
+    title = f"error of the estimate in {label} [{unit}]"
+    plot = _plot(axes, title, axes.values(title), HEIGHT)
+    plot.varea(
+        "time",
+        f"{axis}_below",
+        f"{axis}_above",
+        source=sources.ticks,
+        color=BLUE,
+        fill_alpha=0.16,
+        legend_label="±2σ claimed",
+    )
+    _add(plot, sources, Line(f"{axis}_error", "estimate − robot", BLUE))
+    for number, name in enumerate(shadows):
+        color, dash = OTHERS[number % len(OTHERS)], DASHES[number % len(DASHES)]
+        _add(plot, sources, Line(f"{axis}_error_{name}", name, color, dash, width=1.3))
+    plot.add_layout(Span(dimension="width", location=0.0, line_color=GREY, line_width=1))
+    legend_above(plot)
+    return plot
+
+
+def _speed_plot(sources: Sources, axes: Axes, name: str, title: str) -> figure:
+    sent = Line(f"{name}_sent", "sent", RED, "dashed", step=True, width=1.2)
+    return _lines(sources, axes, title, [sent, Line(name, "in force", BLACK, step=True)])
+
+
+def _delay_plot(sources: Sources, axes: Axes) -> figure:
+    title = "delay of what came [ticks]"
+    plot = _plot(axes, title, axes.values(title), HEIGHT)
+    looks = (
+        (sources.commands, "commands", RED, "circle"),
+        (sources.measurements, "measurements", BLUE, "x"),
+    )
+    for source, label, color, marker in looks:
+        drawn = plot.scatter(
+            "time",
+            "delay",
+            source=source,
+            marker=marker,
+            size=4,
+            color=color,
+            fill_alpha=0.6,
+            line_alpha=0.8,
+            legend_label=label,
+        )
+        tips = [("came at", "@time{0.00} s"), ("stamp", "@tick"), ("delay", "@delay ticks")]
+        plot.add_tools(HoverTool(renderers=[drawn], tooltips=tips, visible=False))
+    legend_above(plot)
+    return plot
+
+
+def _mark_plot(sources: Sources, axes: Axes) -> figure:
+    title = "lost, by cause; refused; when the robot stopped; alarms"
+    plot = _plot(axes, title, FactorRange(factors=list(LANES)), HEIGHT)
+    for cause, (marker, color) in CAUSES.items():
+        view = CDSView(filter=GroupFilter(column_name="what", group=cause))
+        plot.scatter(
+            "time",
+            "lane",
+            source=sources.marks,
+            view=view,
+            marker=marker,
+            size=8,
+            fill_alpha=0,
+            line_color=color,
+            legend_label=cause,
+        )
+    causes = [GroupFilter(column_name="what", group=cause) for cause in CAUSES]
+    others = CDSView(filter=InversionFilter(operand=UnionFilter(operands=causes)))
+    plot.scatter(
+        "time", "lane", source=sources.marks, view=others, marker="diamond", size=9, color=BLACK
+    )
+    tips = [("t", "@time{0.00} s"), ("@lane", "@what")]
+    plot.add_tools(HoverTool(tooltips=tips, visible=False))
+    plot.ygrid.grid_line_color = None
+    plot.xaxis.axis_label = "t [s]"
+    plot.xaxis.axis_label_text_font_size = "11px"
+    legend_above(plot)
+    return plot
+
+
+def _timing_plot(sources: Sources, axes: Axes) -> figure:
+    title = "ticks began late by [ms]"
+    plot = _plot(axes, title, axes.values(title), 150)
+    plot.scatter("time", "late", source=sources.timing, size=3, color=BLACK)
+    return plot
+
+
+def _mark_times(plot: figure, sources: Sources, quiet: Sequence[Silence]) -> None:
+    """When nothing passed, by the scenario; and the time that the page looks at."""
+    for silence in quiet:
+        box = BoxAnnotation(left=silence.start, right=silence.end, level="underlay")
+        box.update(fill_color="#bbbbbb", fill_alpha=0.3, line_color=None, hatch_pattern="/")
+        box.update(hatch_color="#999999", hatch_alpha=0.4, hatch_scale=8, propagate_hover=True)
+        plot.add_layout(box)
+    plot.vspan("time", source=sources.now, color=GREEN, line_width=1.5)

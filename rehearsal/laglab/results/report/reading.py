@@ -1,0 +1,109 @@
+"""From a run to what a page draws of it: as much as fits."""
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from laglab.results.columns import Columns, columns_of, joined
+from laglab.results.report.tables import (
+    ALARM,
+    BY_ITSELF,
+    EMERGENCY,
+    STOPPED,
+    Tables,
+    arrival_columns,
+    losses,
+    marks,
+    places,
+    refusals,
+    tick_columns,
+    timing_columns,
+)
+from laglab.results.run import Run
+from laglab_gateway import ARRIVALS_FILE, CLAIMS_FILE, LINK_FILE, ROWS, TIMING_FILE, Trace
+
+MOST_MARKS = 2_000
+
+
+def tables_of(run: Run, most: int) -> Tables:
+    """With at most so many ticks. Raises: ResultsError, TraceError."""
+    whole = run.drawn
+    trace = {name: column[:: _stride(len(whole["tick"]), most)] for name, column in whole.items()}
+    every = _stride(run.summary.ticks, most)
+    claims = joined(_thinned(run, CLAIMS_FILE, lambda each: _of_ticks(each, trace)))
+    scenario = run.scenario
+    ticks = tick_columns(trace, claims, scenario.goal, scenario.estimator.compare)
+    _note_due(run, ticks)
+    return Tables(
+        ticks,
+        joined(_thinned(run, ARRIVALS_FILE, lambda each: _latest(each, "command", every))),
+        joined(_thinned(run, ARRIVALS_FILE, lambda each: _latest(each, "measurement", every))),
+        _marks_of(run),
+        joined(_thinned(run, TIMING_FILE, lambda each: _worst(each, scenario.sample_time, every))),
+    )
+
+
+def _stride(rows: int, most: int) -> int:
+    return max(1, -(-rows // most))
+
+
+def _thinned(run: Run, file: str, take: Callable[[Columns], Columns]) -> Iterator[Columns]:
+    """What is taken of each piece, and of none at least one."""
+    yield take(columns_of([], ROWS[file]))
+    for piece in run.table_pieces(file):
+        yield take(piece)
+
+
+def _of_ticks(claims: Columns, trace: Trace) -> Columns:
+    there, _ = places(trace["tick"], claims["tick"])
+    return {name: column[there] for name, column in claims.items()}
+
+
+def _note_due(run: Run, ticks: Trace) -> None:
+    """When the command of each tick came into force."""
+    for piece in run.table_pieces(ARRIVALS_FILE):
+        came = arrival_columns(piece, "command")
+        there, at = places(ticks["tick"], came["tick"])
+        ticks["due"][at] = came["due"][there]
+
+
+def _latest(arrivals: Columns, direction: str, every: int) -> Columns:
+    came = arrival_columns(arrivals, direction)
+    return _largest(came, "delay", every)
+
+
+def _worst(timing: Columns, sample_time: float, every: int) -> Columns:
+    return _largest(timing_columns(timing, sample_time), "late", every)
+
+
+def _largest(columns: Columns, by: str, every: int) -> Columns:
+    """Of so many rows one, that which has the most: a peak stays when a run is thinned."""
+    rows = len(columns[by])
+    if every == 1 or rows == 0:
+        return columns
+    starts = np.arange(0, rows, every)
+    kept = [start + int(np.argmax(columns[by][start : start + every])) for start in starts]
+    return {name: column[kept] for name, column in columns.items()}
+
+
+def _marks_of(run: Run) -> Columns:
+    Ts, first = run.scenario.sample_time, float(run.drawn["tick"][0])
+    summary = run.summary
+    found = [_few(joined(_thinned(run, LINK_FILE, lambda each: losses(each, Ts))))]
+    found.append(_few(joined(_thinned(run, ARRIVALS_FILE, refusals))))
+    if link := summary.link:
+        for ticks, what in ((link.failsafe_stops, BY_ITSELF), (link.emergency_ticks, EMERGENCY)):
+            found.append(marks([(tick - first) * Ts for tick in ticks], STOPPED, what))
+    if station := summary.station:
+        times = [(alarm.tick - first) * Ts for alarm in station.alarms]
+        found.append(marks(times, ALARM, [alarm.cause for alarm in station.alarms]))
+    return {
+        name: np.concatenate([np.asarray(each[name], dtype=kind) for each in found])
+        for name, kind in (("time", float), ("lane", object), ("what", object))
+    }
+
+
+def _few(columns: Columns) -> Columns:
+    """Of thousands every so manyth."""
+    every = _stride(len(columns["time"]), MOST_MARKS)
+    return {name: column[::every] for name, column in columns.items()}

@@ -1,0 +1,85 @@
+"""A report: runs that are over, in one HTML file."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from laglab.results.numbers import is_measured
+from laglab.results.report.page import HERE, Page, Panel, html, text_of
+from laglab.results.report.reading import tables_of
+from laglab.results.run import Run
+from laglab.results.summary import Summary
+from laglab.results.table import summary_rows, warnings
+from laglab.results.whole import whole_file
+
+MOST_ROWS = 12_000
+"""Ticks, of all runs together: what a file of 4 MB has room for beside bokeh."""
+MOST_RUNS = 8
+
+
+def report_html(runs: Sequence[Run]) -> str:
+    """One file that needs no other. Raises: ResultsError, TraceError."""
+    names = _names(runs)
+    panels = [
+        _panel(run, name, MOST_ROWS // len(runs)) for run, name in zip(runs, names, strict=True)
+    ]
+    page = Page(
+        title=" and ".join(names) if len(runs) > 1 else _title(runs[0]),
+        scripts=[text_of(HERE, "player.js")],
+        rows=_compared([run.summary for run in runs]),
+        duration=max(float(panel.tables.ticks["time"][-1]) for panel in panels),
+    )
+    return html(page, panels)
+
+
+def save_report(runs: Sequence[Run], path: Path) -> None:
+    """The same as a file. Raises: ResultsError, TraceError."""
+    text = report_html(runs)
+    with whole_file(path) as file:
+        file.write(text.encode())
+
+
+def _title(run: Run) -> str:
+    return f"{run.scenario.name}: {run.scenario.gist}"
+
+
+def _names(runs: Sequence[Run]) -> list[str]:
+    """By their folders; by number where two of these have the same name."""
+    names = [run.directory.name if run.directory else run.scenario.name for run in runs]
+    if len(set(names)) == len(names):
+        return names
+    return [f"{number}: {name}" for number, name in enumerate(names, 1)]
+
+
+def _panel(run: Run, name: str, most: int) -> Panel:
+    tables, summary = tables_of(run, most), run.summary
+    return Panel(
+        name=name,
+        scenario=run.scenario,
+        tables=tables,
+        measured=is_measured(run.drawn),
+        timed=len(tables.timing["time"]) > 0,
+        origin=_origin(summary, len(tables.ticks["tick"])),
+        verdict=summary.verdict,
+        mood="good" if summary.converged else "bad",
+        notices=warnings(summary),
+    )
+
+
+def _origin(summary: Summary, drawn: int) -> str:
+    made = {
+        "both": f"Both sides over {summary.transport}",
+        "robot": f"The robot's side alone at {summary.transport}",
+        "station": f"The station alone at {summary.transport}",
+    }[summary.side]
+    thinned = f"; {drawn} of {summary.ticks + 1} ticks are drawn" if drawn <= summary.ticks else ""
+    return (
+        f"{made}, plant {summary.plant}, seed {summary.seed}, by laglab {summary.laglab}{thinned}. "
+        "The scenario below runs it again: laglab run FILE."
+    )
+
+
+def _compared(summaries: Sequence[Summary]) -> list[tuple[str, list[str]]]:
+    """A row for each number of any of them, a cell for each run."""
+    tables = [summary_rows(summary) for summary in summaries]
+    names = dict.fromkeys(name for table in tables for name in table)
+    return [(name, [table.get(name, "") for table in tables]) for name in names]
