@@ -4,6 +4,7 @@ import base64
 import json
 import os
 import shutil
+import signal
 import subprocess
 import time
 from collections.abc import Iterator
@@ -158,12 +159,8 @@ def browser(program: str, folder: Path) -> Iterator[Browser]:
         yield Browser(_port(folder / "DevToolsActivePort", process))
     finally:
         with suppress(ProcessLookupError):
-            os.killpg(process.pid, 15)
-        try:
-            process.wait(10)
-        except subprocess.TimeoutExpired:
-            os.killpg(process.pid, 9)
-            process.wait()
+            os.killpg(process.pid, signal.SIGKILL)  # nothing of its profile is kept
+        process.wait()
 
 
 def _port(file: Path, process: "subprocess.Popen[bytes]") -> int:

@@ -1,6 +1,7 @@
 """The report, as a browser shows it."""
 
 import io
+from dataclasses import replace as replace_
 from pathlib import Path
 
 import numpy as np
@@ -8,12 +9,13 @@ import pytest
 from msgspec.structs import replace
 from PIL import Image
 
-from laglab import Run
+from laglab import Run, load_study, sweep
 from laglab.results.report import report_html, save_report
 from laglab.results.report.reading import tables_of
 from laglab.results.run import Kept
 from laglab.results.table import summary_rows
 from laglab.scenario import load
+from laglab.studies.maps.page import save_study_page
 from laglab_gateway import ARRIVALS_FILE, ROWS
 
 from .browser import Tab
@@ -161,3 +163,20 @@ def test_a_long_run_is_thinned_and_keeps_its_peaks(radio: Run) -> None:
     )
     assert tables_of(long, 5_000).commands["delay"].max() == 100
     assert len(report_html([long])) < MOST_BYTES
+
+
+def test_a_study_is_a_page_of_maps(tab: Tab, tmp_path: Path) -> None:
+    study = load_study("delay-map")
+    grid = {"link.command_delay": (0, 20), "link.measurement_delay": (0, 20)}
+    few = replace_(study, grid=grid, seeds=(1, 2))
+    few = replace_(few, scenario=few.scenario.overridden({"duration": 1.0}))
+    result = sweep(few, out=tmp_path / "study")
+    page = tmp_path / "page.html"
+    save_study_page(few, result.directory, ["8 runs & more"], page)
+    tab.open(page.as_uri())
+    assert tab.errors == []
+    assert [each for each in tab.requests if not each.startswith(("file:", "data:"))] == []
+    assert tab.text(".verdict") == "8 runs & more"
+    cells = "Bokeh.documents[0].roots()[0].renderers[0].data_source.data"
+    assert tab.value(f"Array.from({cells}.x)") == ["0", "20", "0", "20"]
+    assert len(tab.value(f"Array.from({cells}.centre)")) == 4

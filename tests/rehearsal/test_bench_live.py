@@ -1,4 +1,4 @@
-"""The benchmark of the live page: with nobody there, with readers, with such as stall."""
+"""The benchmark of the live page tries it with nobody there, with readers, and with idle ones."""
 
 import subprocess
 from collections.abc import Callable

@@ -8,8 +8,9 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from laglab.extras import STUDYING, require
+from laglab.extras import SEEING, STUDYING, require
 from laglab.progress import progress_of_study
+from laglab.results.place import REPORT_FILE
 from laglab.scenario import assignment
 
 if TYPE_CHECKING:
@@ -43,6 +44,9 @@ def sweep(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Compute again what is there.")] = False,
     limit: Annotated[int, typer.Option(min=1, help="The most runs that are meant.")] = 1_000_000,
+    report: Annotated[
+        bool, typer.Option("--report", help="Leave report.html, too: its maps, to be zoomed.")
+    ] = False,
 ) -> None:
     """Run a scenario over a grid of its keys, and over seeds.
 
@@ -53,6 +57,8 @@ def sweep(
         _list()
         return
     require(STUDYING)
+    if report:
+        require(SEEING)
     from laglab.studies.sweep.folder import Folder
     from laglab.studies.sweep.loading import load_study
     from laglab.studies.sweep.plan import check_size, planned
@@ -71,7 +77,13 @@ def sweep(
         _workers(scheduler, workers) as executor,
     ):
         compute(chosen, folder, executor, done, force)
-    Console().print(summary(chosen, folder, plan), markup=False, highlight=False)
+    said = summary(chosen, folder, plan)
+    Console().print(said, markup=False, highlight=False)
+    if report:
+        from laglab.studies.maps.page import save_study_page
+
+        save_study_page(chosen, folder.path, said.splitlines(), folder.path / REPORT_FILE)
+        Console().print(f"report in {folder.path / REPORT_FILE}", highlight=False, soft_wrap=True)
 
 
 def _workers(scheduler: str | None, workers: int) -> "AbstractContextManager[Executor]":

@@ -31,7 +31,7 @@ PERIOD = 0.1
 """[s] between two pieces of news."""
 GOODBYE = 0.5
 """[s]"""
-POLITE = 10
+POLITE = 19
 """The loop goes first."""
 
 

@@ -90,21 +90,25 @@ def html(page: Page, panels: Sequence[Panel]) -> str:
         }
         for i, panel in enumerate(panels)
     ]
-    return _template().render(
+    return template(HERE, "page.html").render(
         title=page.title,
         live=page.live,
         controls=page.controls,
         duration=page.duration,
         rows=page.rows,
-        policy="; ".join(f"{what} {where}" for what, where in page.policy.items()),
+        policy=policy_of(page.policy),
         style=Markup(text_of(HERE, "page.css")),
         runs=runs,
         kinds=kinds,
-        made_by=_made_by(),
+        made_by=made_by(),
         settings=_settings(panels),
         scripts=Markup(
             "\n".join(
-                [*_bokeh(), drawing, *map(_tagged, (text_of(HERE, "robot.js"), *page.scripts))]
+                [
+                    *bokeh_scripts(),
+                    drawing,
+                    *map(tagged, (text_of(HERE, "robot.js"), *page.scripts)),
+                ]
             )
         ),
     )
@@ -128,10 +132,16 @@ def _settings(panels: Sequence[Panel]) -> Markup:
     return Markup(msgspec.json.encode({"runs": told}).decode())
 
 
-def _template() -> jinja2.Template:
+def template(package: str, name: str) -> jinja2.Template:
+    """Of a page; whatever is put into it is text, unless it is said to be markup."""
     return jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(
-        text_of(HERE, "page.html")
+        text_of(package, name)
     )
+
+
+def policy_of(allowed: Mapping[str, str]) -> str:
+    """As a page states it."""
+    return "; ".join(f"{what} {where}" for what, where in allowed.items())
 
 
 def text_of(package: str, name: str) -> str:
@@ -139,15 +149,18 @@ def text_of(package: str, name: str) -> str:
     return (files(package) / name).read_text(encoding="utf-8")
 
 
-def _tagged(text: str) -> str:
+def tagged(text: str) -> str:
+    """As a part of a page."""
     return f"<script>{text}</script>"
 
 
-def _bokeh() -> list[str]:
+def bokeh_scripts() -> list[str]:
+    """All that its plots need."""
     inline = Resources(mode="inline", components=["bokeh"], log_level="error")
-    return [_tagged(text) for text in inline.js_raw]
+    return [tagged(text) for text in inline.js_raw]
 
 
-def _made_by() -> str:
+def made_by() -> str:
+    """With which versions a page was made."""
     packages = ", ".join(f"{name} {version(name)}" for name in ("numpy", "bokeh"))
     return f"Page by laglab {laglab_version()}, Python {platform.python_version()}, {packages}."

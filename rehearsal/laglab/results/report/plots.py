@@ -82,7 +82,7 @@ def time_plots(sources: Sources, scenario: Scenario, axes: Axes, timed: bool) ->
     plots["goal"] = _lines(
         sources,
         axes,
-        "distance to the goal ρ [m], heading error [rad]",
+        "to the goal: ρ [m], heading [rad]",
         [
             Line("rho", "ρ", BLACK),
             Line("turn", "heading error", BLUE, "dashed"),
@@ -129,7 +129,7 @@ def dressed(plot: figure) -> figure:
     for axis in plot.axis:
         axis.axis_line_color = axis.major_tick_line_color = "#999999"
         axis.minor_tick_line_color = None
-        axis.major_label_text_font_size = "11px"
+        axis.major_label_text_font_size = axis.axis_label_text_font_size = "11px"
     return plot
 
 
@@ -225,7 +225,7 @@ def _delay_plot(sources: Sources, axes: Axes) -> figure:
 
 
 def _mark_plot(sources: Sources, axes: Axes) -> figure:
-    title = "lost, by cause; refused; when the robot stopped; alarms"
+    title = "lost, by cause; refused; stops; alarms"
     plot = _plot(axes, title, FactorRange(factors=list(LANES)), HEIGHT)
     for cause, (marker, color) in CAUSES.items():
         view = CDSView(filter=GroupFilter(column_name="what", group=cause))
@@ -249,8 +249,8 @@ def _mark_plot(sources: Sources, axes: Axes) -> figure:
     plot.add_tools(HoverTool(tooltips=tips, visible=False))
     plot.ygrid.grid_line_color = None
     plot.xaxis.axis_label = "t [s]"
-    plot.xaxis.axis_label_text_font_size = "11px"
     legend_above(plot)
+    plot.legend[0].ncols = 3
     return plot
 
 
