@@ -146,7 +146,8 @@ def test_when_only_the_figure_finds_no_room(small_disk: SmallDisk) -> None:
     assert_one_line(said(run, 4), line)
     small_disk.assert_whole()
     left = {path.name for path in (small_disk.kept / "run").iterdir()}
-    assert left == {"scenario.toml", "trace.csv", "robot.tlog", "summary.json"}
+    tables = {"trace.csv", "arrivals.csv", "claims.csv"}
+    assert left == {"scenario.toml", "robot.tlog", "summary.json", *tables}
 
 
 @pytest.mark.parametrize("name", ["summary.json", "figure.png"])
