@@ -126,7 +126,9 @@ class Rate(ProgressColumn):
 
     def render(self, task: Task) -> Text:
         speed = task.finished_speed or task.speed
-        if speed is None:
+        if speed is None and task.elapsed:  # nothing but the end was told
+            speed = task.completed / task.elapsed
+        if not speed:
             return Text()
         digits = f"{speed:.0f}" if speed >= 100 else f"{speed:.2g}"
         return Text(f"{digits} {self._unit}/s")

@@ -94,7 +94,7 @@ def is_driving(trace: Trace) -> bool:
 
 def ended(process: Process, code: int) -> str:
     """What it said, once it has ended as it should."""
-    output, errors = process.communicate(timeout=20)
+    output, errors = process.communicate(timeout=50)
     assert process.returncode == code, errors
     assert "Traceback" not in errors
     return str(output + errors)
