@@ -140,6 +140,7 @@ def run(
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(180)  # a busy machine takes its time
 def test_an_hour_of_ticks_does_not_drift() -> None:
     rng = np.random.default_rng(1)
     link = SimulatedLink(lambda _: 0.001, lambda: float(rng.exponential(2e-4)))

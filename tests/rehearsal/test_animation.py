@@ -15,6 +15,7 @@ MOST = 1_000_000
 """[bytes] Of a picture that a page opens with."""
 
 
+@pytest.mark.slow
 def test_the_robots_move_side_by_side(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name in ("fig5", "fig6"):
         laglab.run(name, {"duration": 0.5}, out=tmp_path / name)

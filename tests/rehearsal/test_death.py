@@ -227,6 +227,7 @@ def test_files_are_whole_whenever_a_side_is_killed(
         assert sum(8 + len(frame.raw) for _, frame in read_tlog(directory / "robot.tlog")) == size
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("pace", [("lockstep",), ("realtime", "--speed", "2")])
 def test_a_controller_started_again_takes_over(
     start: Start, listening_port: ListeningPort, tmp_path: Path, pace: tuple[str, ...]

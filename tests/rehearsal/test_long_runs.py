@@ -47,6 +47,7 @@ class Meter(Recorder):
         self.blocks.append(sys.getallocatedblocks())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("link", [{}, LOSSY], ids=["ideal", "lossy"])
 def test_a_run_of_any_length_takes_the_same_memory(link: dict[str, float], tmp_path: Path) -> None:
     ticks, meter = SETTLED + 2 * SWINGS, Meter()
