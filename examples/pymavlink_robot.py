@@ -1,6 +1,6 @@
-"""A robot in lock-step, sixty lines of pymavlink: `python pymavlink_robot.py PORT`.
+"""A robot in lock-step, eighty lines on pymavlink: `python pymavlink_robot.py PORT`.
 
-It is written by protocol/README.md alone, and answers what it must.
+It follows protocol/README.md alone, and answers what it must.
 """
 
 import math

@@ -3,6 +3,8 @@
 import compileall
 import re
 import subprocess
+import sys
+import venv
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -62,3 +64,18 @@ def listening_port() -> Callable[["subprocess.Popen[str]"], str]:
         return found[1]
 
     return read
+
+
+@pytest.fixture
+def install_afresh(tmp_path: Path) -> Callable[..., Path]:
+    """Installs into an environment of its own, whose Python it gives; the environment of the tests
+    needs no pip of its own."""
+    python = tmp_path / "environment" / "bin" / "python"
+    pip = [f"{sys.base_prefix}/bin/python3", "-m", "pip", "--python", str(python), "install", "-q"]
+    venv.create(tmp_path / "environment", with_pip=False)
+
+    def install(what: str, clone: Path = ROOT) -> Path:
+        subprocess.run([*pip, what], cwd=clone, check=True, capture_output=True, timeout=240)
+        return python
+
+    return install

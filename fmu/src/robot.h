@@ -57,7 +57,7 @@ double robot_to_sample(const Robot *robot);
 void robot_move(Robot *robot, double step);
 bool robot_is_due(const Robot *robot);
 
-/* Whether neither outputs have overflowed, after `robot_speeds`. */
+/* Whether no output has overflowed, after `robot_speeds`. */
 bool robot_is_finite(const Robot *robot);
 
 /* Takes the next sample here and now: fresh noise and a fresh measurement. */

@@ -144,7 +144,9 @@ def test_names_in_the_pages_exist(name: str) -> None:
 
 
 def commands() -> list[str]:
-    found = [re.findall(r"`laglab ([a-z][^`]*)`", prose(page)) for page in ROOT.glob("docs/*.md")]
+    pages = list(ROOT.glob("docs/*.md"))
+    found = [re.findall(r"`laglab ([a-z][^`]*)`", prose(page)) for page in pages]
+    found += [re.findall(r"^laglab (.+)$", page.read_text("utf-8"), flags=re.M) for page in pages]
     return sorted({re.sub(r"\s+", " ", command) for each in found for command in each})
 
 

@@ -3,29 +3,24 @@
 import os
 import subprocess
 import sys
-import venv
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-BASE_PYTHON = f"{sys.base_prefix}/bin/python3"
-"""The environment of the tests needs no pip of its own."""
 OPTIONS = ("lab", "--duration", "0.5", "--endpoint")
 
 
 class Machine:
     """A fresh virtual environment with laglab as `pip install '.[EXTRA]'` leaves it."""
 
-    def __init__(self, folder: Path, clone: Path) -> None:
+    def __init__(self, folder: Path, clone: Path, install: Callable[..., Path]) -> None:
         self._folder = folder
         self._clone = clone
-        self._python = folder / "env" / "bin" / "python"
-        venv.create(folder / "env", with_pip=False)
+        self._install = install
 
     def install(self, what: str) -> None:
-        pip = [BASE_PYTHON, "-m", "pip", "--python", str(self._python), "install", "-q", what]
-        subprocess.run(pip, cwd=self._clone, check=True)
+        self._python = self._install(what, self._clone)
 
     def has(self, module: str) -> bool:
         found = [self._python, "-c", f"import {module}"]
@@ -60,9 +55,12 @@ def test_no_command_loads_what_it_does_not_need() -> None:
 @pytest.mark.slow
 @pytest.mark.timeout(300)
 def test_each_side_runs_where_only_what_it_needs_is_installed(
-    bare_clone: Path, tmp_path: Path, listening_port: Callable[["subprocess.Popen[str]"], str]
+    bare_clone: Path,
+    tmp_path: Path,
+    install_afresh: Callable[..., Path],
+    listening_port: Callable[["subprocess.Popen[str]"], str],
 ) -> None:
-    machine = Machine(tmp_path, bare_clone)
+    machine = Machine(tmp_path, bare_clone, install_afresh)
     machine.install(".[controller]")
     assert not machine.has("fmpy")
     assert not machine.has("matplotlib")

@@ -23,6 +23,7 @@ from laglab.soak import (
 )
 from laglab.soak.draw import SIGNALS
 from laglab.soak.system import marked
+from laglab_gateway import ROWS
 
 LOCKSTEP = {"pace": "lockstep", "duration": 15.0}
 REAL_TIME = {"pace": "realtime", "speed": 2.0, "duration": 4.0}
@@ -125,6 +126,13 @@ def test_each_expectation_can_fail(name: str) -> None:
     assert list(failures(WRONG[name])) == [name]
 
 
+def test_a_descriptor_that_is_not_a_files_is_told() -> None:
+    opened = (*WELL[:10], *(Sample(100 << 20, 9 + len(ROWS) + 1),) * 10)
+    assert list(failures(with_controller(replace(CONTROLLER, samples=opened)))) == ["nothing grows"]
+    opened = (*WELL[:10], *(Sample(100 << 20, 9 + len(ROWS)),) * 10)
+    assert failures(with_controller(replace(CONTROLLER, samples=opened))) == {}
+
+
 LEAKING = """
 import subprocess, sys, tempfile
 if sys.orig_argv[-1].endswith("controller") and "--endpoint" in sys.orig_argv:
@@ -150,6 +158,7 @@ def test_what_leaks_is_told_and_kept(
     assert "turn 1: no traceback: the controller said 'Traceback'" in said
     assert "turn 1: no process goes on: 1 processes go on running" in said
     assert "again: laglab soak --seed 1 --turn 1" in said
+    out /= "again-1"
     assert json.loads((out / "turn-1" / "turn.json").read_text())["failures"]
     report = msgspec.json.decode((out / "soak.json").read_text(), type=Report)
     assert [failed.turn for failed in report.tally.failed] == [1]

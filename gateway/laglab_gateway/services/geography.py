@@ -71,7 +71,7 @@ def global_position(state: RobotState, origin: Origin) -> GlobalPositionInt:
     ned = to_ned(state)
     point = origin.at(ned.north, ned.east)
     return GlobalPositionInt(
-        time_boot_ms=state.time_us // 1000,
+        time_boot_ms=state.time_ms,
         lat=point.latitude,
         lon=point.longitude,
         alt=origin.altitude_mm,

@@ -14,6 +14,11 @@ class RobotState(NamedTuple):
     v: float
     omega: float
 
+    @property
+    def time_ms(self) -> int:
+        """The same time in whole milliseconds."""
+        return self.time_us // 1000
+
 
 Pose = tuple[float, float, float]
 """x, y, theta [m, m, rad]; NaN stands for the start pose's."""

@@ -61,21 +61,19 @@ def extended_sys_state() -> ExtendedSysState:
 
 def system_time(state: RobotState) -> SystemTime:
     """Time since the start; what day it is, a simulation does not know."""
-    return SystemTime(time_unix_usec=0, time_boot_ms=_milliseconds(state))
+    return SystemTime(time_unix_usec=0, time_boot_ms=state.time_ms)
 
 
 def attitude(state: RobotState) -> Attitude:
     """Yaw alone: the robot lives in the plane."""
     ned = to_ned(state)
-    return Attitude(_milliseconds(state), 0.0, 0.0, ned.yaw, 0.0, 0.0, ned.yaw_rate)
+    return Attitude(state.time_ms, 0.0, 0.0, ned.yaw, 0.0, 0.0, ned.yaw_rate)
 
 
 def local_position(state: RobotState) -> LocalPositionNed:
     """Position and velocity in the world."""
     ned = to_ned(state)
-    return LocalPositionNed(
-        _milliseconds(state), ned.north, ned.east, 0.0, ned.v_north, ned.v_east, 0.0
-    )
+    return LocalPositionNed(state.time_ms, ned.north, ned.east, 0.0, ned.v_north, ned.v_east, 0.0)
 
 
 def odometry(state: RobotState) -> Odometry:
@@ -103,7 +101,3 @@ def odometry(state: RobotState) -> Odometry:
         child_frame_id=mavlink.MAV_FRAME_BODY_NED,
         estimator_type=mavlink.MAV_ESTIMATOR_TYPE_NAIVE,
     )
-
-
-def _milliseconds(state: RobotState) -> int:
-    return state.time_us // 1000

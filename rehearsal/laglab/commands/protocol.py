@@ -121,8 +121,8 @@ def conform(
     The robot, or the controller, whose run it ends.
     """
     if self_test:
-        if url or side:
-            raise typer.BadParameter("--self-test has robots of its own: leave URL and --side out")
+        if url or side or junit or key or pace or silent:
+            raise typer.BadParameter("--self-test has robots of its own: say nothing else with it")
         with status() as tell:
             tell("robots that read by other people's parsers")
             tested = parsers_tested()

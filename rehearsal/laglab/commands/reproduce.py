@@ -13,6 +13,7 @@ from laglab.extras import REHEARSING, require
 from laglab.progress import tracked
 from laglab.results.writable import folder_place
 from laglab.studies.reproduce import CLAIMS, Entry, entries, trying, write_report
+from laglab.tables import plain_table
 
 
 def reproduce(
@@ -47,9 +48,7 @@ def _known(name: str) -> str:
 
 
 def _table(of: list[Entry]) -> Table:
-    table = Table(box=None, padding=(0, 2, 0, 0))
-    for column in ("claim", "where", "verdict"):
-        table.add_column(column)
+    table = plain_table("claim", "where", "verdict")
     for entry in of:
         table.add_row(entry.claim.name, entry.claim.place, f"{entry.sign} {entry.spelled}")
     return table

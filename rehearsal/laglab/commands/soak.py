@@ -44,7 +44,8 @@ def soak(
             console.print(line, highlight=False, soft_wrap=True, markup=False)
 
     command = f"laglab soak --minutes {minutes:g} --seed {seed}"
-    going = Soak(command if turn is None else repeated(seed, turn), seed, _place(out), tell)
+    place = _place(out if turn is None else out / f"again-{turn}")  # the soak's report stays
+    going = Soak(command if turn is None else repeated(seed, turn), seed, place, tell)
     try:
         if turn is None:
             with passing("soak", 60 * minutes) as passed:
@@ -56,7 +57,7 @@ def soak(
     report = going.report()
     for table in summary_tables(report):
         console.print(table)
-    tell([verdict(report), f"report in {out}"])
+    tell([verdict(report), f"report in {place}"])
     raise typer.Exit(FAILED if report.tally.failed else 0)
 
 

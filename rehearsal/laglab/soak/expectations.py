@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping
 
 from laglab.soak.played import Part, Played
+from laglab_gateway import ROWS
 
 COMPLETED, KNOWN_BEFORE, DIVERGED, BROKE, INTERRUPTED = 0, 2, 3, 4, 130
 """Exit codes, as the README lists them."""
@@ -102,7 +103,7 @@ def nothing_grows(played: Played) -> Iterator[str]:
         if grown > MOST_GROWTH + (FILLING if part.ticks < 2 * FULL_AFTER else 0):
             yield f"the {part.side}'s memory grew by {grown >> 10} kB"
         opened = max(s.descriptors for s in late) - max(s.descriptors for s in early)
-        if opened > 0:
+        if opened > len(ROWS):  # a file is opened when there is something to write into it
             yield f"the {part.side} has {opened} more descriptors open"
 
 

@@ -10,6 +10,7 @@ from rich.table import Table
 
 from laglab.bench.result import Machine
 from laglab.soak.tally import Tally
+from laglab.tables import plain_table
 
 SCHEMA = 1
 """Of the JSON; another number, another meaning of a field."""
@@ -78,7 +79,7 @@ def summary_tables(report: Report) -> Iterator[Table]:
 
 
 def _shown(head: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
-    table = Table(box=None, padding=(0, 1, 0, 0))
+    table = plain_table()
     for name in head:
         table.add_column(name, justify="left" if name == head[0] else "right")
     for row in rows:

@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -66,19 +67,12 @@ def test_mavsdk_4_looks_around_arms_and_sees_it_move(
 
 
 @pytest.fixture
-def python_with_mavsdk_3(tmp_path: Path) -> Path:
+def python_with_mavsdk_3(install_afresh: Callable[..., Path]) -> Path:
     """An environment of its own, for mavsdk 3 and 4 bear the same name."""
-    folder = tmp_path / "environment"
-    python = folder / "bin" / "python"
     try:
-        for command in (
-            [sys.executable, "-m", "venv", folder],
-            [python, "-m", "pip", "install", "--quiet", "mavsdk>=3.17,<4"],
-        ):
-            subprocess.run(command, check=True, capture_output=True, timeout=120)
+        return install_afresh("mavsdk>=3.17,<4")
     except (OSError, subprocess.SubprocessError) as error:
         pytest.skip(f"mavsdk 3 is not to be had here: {error}")
-    return python
 
 
 @pytest.mark.slow
