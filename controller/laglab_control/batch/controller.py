@@ -17,14 +17,13 @@ from laglab_control.batch.estimators import (
 from laglab_control.batch.guard import Found
 from laglab_control.batch.law import Demands, drive, slowed, stand_still
 from laglab_control.batch.matrices import Symmetric
-from laglab_control.batch.robots import Robots
-from laglab_control.batch.rows import Pose, Row, Speeds
+from laglab_control.batch.robots import Robots, diverged, prior_of
+from laglab_control.batch.rows import Pose, Speeds
 from laglab_control.batch.turning import Turned, TurnedWay, Turning, nowhere, turned, way_of
-from laglab_control.controller import FAR, StationConfig
+from laglab_control.controller import StationConfig
 from laglab_control.errors import ConfigError
 from laglab_control.estimators.family import estimator_kind
 from laglab_control.model import Matrix
-from laglab_control.motion import Motion
 from laglab_control.past.sliding import SlidingProduct
 
 
@@ -55,7 +54,7 @@ class BatchController:
     none is refused. At tick 0 `answer(start(), ...)`; at every later tick
     `answer(advance(control), ...)`.
 
-    Raises ConfigError when there is no such estimator for many robots.
+    Raises ConfigError when there is no such estimator for many robots, or R is not diagonal.
     """
 
     config: StationConfig
@@ -69,8 +68,7 @@ class BatchController:
         kind = self.config.estimator
         if kind not in BATCHED:
             raise ConfigError(f"there is no {kind} for many robots, but {', '.join(BATCHED)}")
-        if np.any(np.diag(np.diag(self.config.model.R)) != self.config.model.R):
-            raise ConfigError("R must be diagonal for many robots")
+        _ = self._robots  # refuses what it cannot be
 
     @property
     def robots(self) -> int:
@@ -99,9 +97,7 @@ class BatchController:
 
     def start(self) -> BatchControl:
         """Tick 0, before its correction."""
-        x, y, theta = np.array(self.initial_estimates)
-        P = np.asarray(self.config.initial_covariance)[np.triu_indices(3)]
-        prior = Motion(x, y, theta, *[np.full(self.robots, each) for each in P])
+        prior = prior_of(self.config, self.initial_estimates)
         standing = stand_still(self.robots)
         flight: SlidingProduct[Turned, TurnedWay]
         flight = SlidingProduct(self._turning.joined, way_of(nowhere()))
@@ -131,7 +127,7 @@ class BatchController:
         (pose, _), P = estimate
         if P is not None and found is not None:
             P = guard.claimed(P, found)
-        lost = lost | self._diverged(pose)
+        lost = lost | diverged(pose, self.config.law.goal, self.initial_estimates)
         demands = self._command(estimate._replace(P=P), in_flight, last, lost)
         return BatchControl(state, found, in_flight, demands, lost, pose, P)
 
@@ -151,17 +147,6 @@ class BatchController:
         if lost.any():
             speeds = Speeds(*[np.where(lost, 0.0, each) for each in speeds])
         return Demands(speeds, at_goal)
-
-    def _diverged(self, pose: Pose) -> NDArray[np.bool_]:
-        """Not finite, or FAR from where it began and from the goal."""
-        x_goal, y_goal, _ = self.config.law.goal
-        x_began, y_began, _ = self.initial_estimates
-        near = _within(pose, x_goal, y_goal) | _within(pose, x_began, y_began)
-        return ~(near & np.isfinite(pose.theta))
-
-
-def _within(pose: Pose, x: Row | float, y: Row | float) -> NDArray[np.bool_]:
-    return np.hypot(pose.x - x, pose.y - y) <= FAR
 
 
 def _sent(

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab_control.batch.matrices import Symmetric, weighted
+from laglab_control.batch.matrices import Symmetric, plus_square, weighted
 from laglab_control.batch.robots import Compared
 from laglab_control.batch.rows import Pose, Row
 from laglab_control.chi_square import chi_square_bound
@@ -77,11 +77,7 @@ def claimed(P: Symmetric, found: Found) -> Symmetric:
     """P, and b b^T where the innovations suggest an error b."""
     if not found.lags.statistic.any():
         return P
-    x, y, theta = found.lags.mean
-    return Symmetric(
-        *(P.xx + x * x, P.xy + x * y, P.xt + x * theta),
-        *(P.yy + y * y, P.yt + y * theta, P.tt + theta * theta),
-    )
+    return plus_square(P, found.lags.mean)
 
 
 def _lags(evidence: Log[Sums], weights: Symmetric) -> Lags:

@@ -103,6 +103,15 @@ def less_outer(P: Symmetric, K: Square, cross: Square) -> Symmetric:
     )
 
 
+def plus_square(P: Symmetric, d: Pose) -> Symmetric:
+    """P + d d^T."""
+    x, y, theta = d
+    return Symmetric(
+        *(P.xx + x * x, P.xy + x * y, P.xt + x * theta),
+        *(P.yy + y * y, P.yt + y * theta, P.tt + theta * theta),
+    )
+
+
 def less_identity(K: Square) -> Square:
     """I - K."""
     return Square(1 - K.xx, -K.xy, -K.xt, -K.yx, 1 - K.yy, -K.yt, -K.tx, -K.ty, 1 - K.tt)

@@ -1,14 +1,19 @@
 """What the model says of many robots that are alike, and what is known of them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from laglab_control.batch import matrices
 from laglab_control.batch.matrices import Symmetric, covariance_of
 from laglab_control.batch.rows import Belief, Pose, Row, Speeds, difference, headings, pose_of
+from laglab_control.controller import FAR, StationConfig
+from laglab_control.errors import ConfigError
+from laglab_control.model import Matrix
 from laglab_control.motion import Motion, composed_along
 from laglab_control.robot import RobotModel
 
@@ -38,11 +43,35 @@ def composed(first: Belief, second: Belief) -> Belief:
     return composed_along(headings(first.theta), first, second)
 
 
+def prior_of(config: StationConfig, initial_estimates: Matrix) -> Belief:
+    """Of tick 0: the poses (3, robots), and P_0."""
+    x, y, theta = np.array(initial_estimates)
+    P = np.asarray(config.initial_covariance)[np.triu_indices(3)]
+    return Motion(x, y, theta, *[np.full(len(x), each) for each in P])
+
+
+def diverged(pose: Pose, goal: Sequence[float], began: Matrix) -> NDArray[np.bool_]:
+    """Not finite, or FAR from where it began and from the goal."""
+    near = _within(pose, *goal[:2]) | _within(pose, *began[:2])
+    return ~(near & np.isfinite(pose.theta))
+
+
+def _within(pose: Pose, x: Row | float, y: Row | float) -> NDArray[np.bool_]:
+    return np.hypot(pose.x - x, pose.y - y) <= FAR
+
+
 @dataclass(frozen=True, eq=False)
 class Robots:
-    """Their sensor's errors in x, y and theta are independent: R is diagonal."""
+    """Their sensor's errors in x, y and theta are independent: R is diagonal.
+
+    Raises ConfigError when it is not.
+    """
 
     model: RobotModel
+
+    def __post_init__(self) -> None:
+        if np.any(np.diag(np.diag(self.model.R)) != self.model.R):
+            raise ConfigError("R must be diagonal for many robots")
 
     @cached_property
     def _noise(self) -> list[Row]:

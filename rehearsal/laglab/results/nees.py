@@ -4,6 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+NOTHING = 1e-12
+"""Of a variance: what is left below this when the other components are known is rounding."""
 
 
 def nees(error: Array, P: Array) -> Array:
@@ -24,5 +26,6 @@ def nees(error: Array, P: Array) -> Array:
         y1 = error[..., 1] - l10 * y0
         y2 = error[..., 2] - l20 * y0 - l21 * y1
         value = y0 * y0 / d0 + y1 * y1 / d1 + y2 * y2 / d2
-        definite = (d0 > 0) & (d1 > 0) & (d2 > 0) & np.isfinite(value)
+        definite = (d0 > 0) & (d1 > NOTHING * P[..., 1, 1]) & (d2 > NOTHING * P[..., 2, 2])
+        definite &= np.isfinite(value)
     return np.where(definite, value, np.nan)

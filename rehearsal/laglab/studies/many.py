@@ -7,9 +7,9 @@ link does more than delay, what happens when is found out first, seed by seed (`
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ from laglab.runs.robot_side import link_fates, robot_parameters
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario
 from laglab.studies.schedule import schedule_of
-from laglab_control.batch import BATCHED, BatchController, Pose, Speeds
+from laglab_control.batch import BATCHED, BatchController, Pose, Speeds, Symmetric
 from laglab_control.batch.impaired import ImpairedController, Timetable
 from laglab_gateway.drive import FASTEST, Safety
 
@@ -56,10 +56,8 @@ def run_many(scenarios: Sequence[Scenario]) -> Many:
     many = _unwritten(scenario.must_end(), len(scenarios))
     parameters = [robot_parameters(each) for each in scenarios]
     with Fleet.open(parameters) as fleet, np.errstate(all="ignore"):  # what diverges overflows
-        if is_ideal(scenario):
-            _run(fleet, scenarios, many)
-        else:
-            _run_impaired(fleet, scenarios, many)
+        way = OnTime(scenarios) if is_ideal(scenario) else Impaired(scenarios)
+        _run(fleet, scenario, way.answer, many)
     return many
 
 
@@ -106,55 +104,84 @@ def _starts(scenarios: Sequence[Scenario]) -> Array:
     return np.array([each.first_estimate() for each in scenarios]).T
 
 
-def _run(fleet: Fleet, scenarios: Sequence[Scenario], many: Many) -> None:
-    scenario, last = scenarios[0], len(many.truth) - 1
-    n, m = scenario.link.command_delay, scenario.link.measurement_delay
-    controller = BatchController(
-        station_config(scenario), _starts(scenarios), m, exact=not scenario.noise
-    )
-    control = controller.start()
-    measurements = deque[Pose]()
-    commands = deque([control.drive.speeds] * n)
-    wheels = Wheels(scenario)
-    for k in range(last + 1):
-        many.truth[k] = fleet.readings[:, :3].T
-        measurements.append(Pose(*fleet.readings[:, 3:6].T.copy()))
-        arrived = measurements.popleft() if k >= m else None
-        control = controller.answer(controller.advance(control) if k else control, arrived)
-        if control.pose is not None and control.P is not None:  # as the station reports it
-            many.estimates[k], many.P[k] = control.pose, control.P
-        commands.append(control.drive.speeds)
-        applied = commands.popleft()
-        many.applied[k] = applied
-        many.unsure[:] |= refused(control.drive.speeds, scenario.safety)
-        ends = control.lost & ~many.diverged
-        many.last_tick[ends] = k
-        many.diverged[:] |= ends
-        if k < last:
-            fleet.step(wheels.turning(applied))
-    if control.found is not None:
-        many.unsure[:] |= control.found.acts
+class Answers(NamedTuple):
+    """Of all robots at a tick."""
+
+    pose: Pose | None
+    P: Symmetric | None
+    sent: Speeds
+    applied: Speeds
+    lost: NDArray[np.bool_]
+    """The robots whose estimate has diverged."""
+    acts: NDArray[np.bool_]
+    """The robots whose guard would have acted by now."""
 
 
-def _run_impaired(fleet: Fleet, scenarios: Sequence[Scenario], many: Many) -> None:
-    scenario, last = scenarios[0], len(many.truth) - 1
-    schedules = [schedule_of(each) for each in scenarios]
-    timetable = Timetable([each.course for each in schedules])
-    controller = ImpairedController(station_config(scenario), _starts(scenarios), timetable)
-    many.unsure[:] = [each.beyond for each in schedules]
-    wheels = Wheels(scenario)
+def _run(fleet: Fleet, scenario: Scenario, answer: Callable[[Pose], Answers], many: Many) -> None:
+    """`answer` is given what is sampled at each tick."""
+    wheels, last = Wheels(scenario), len(many.truth) - 1
     for k in range(last + 1):
         many.truth[k] = fleet.readings[:, :3].T
-        pose, P, sent, lost = controller.answer(Pose(*fleet.readings[:, 3:6].T))
-        if P is not None:  # as the station reports it
+        pose, P, sent, applied, lost, acts = answer(Pose(*fleet.readings[:, 3:6].T.copy()))
+        if pose is not None and P is not None:  # as the station reports it
             many.estimates[k], many.P[k] = pose, P
-        many.applied[k] = applied = controller.applied()
-        many.unsure[:] |= ~many.diverged & (controller.acts | refused(sent, scenario.safety))
+        many.applied[k] = applied
+        many.unsure[:] |= ~many.diverged & (acts | refused(sent, scenario.safety))
         ends = lost & ~many.diverged
         many.last_tick[ends] = k
         many.diverged[:] |= ends
         if k < last:
             fleet.step(wheels.turning(applied))
+
+
+class OnTime:
+    """Over a link that delivers everything on time."""
+
+    def __init__(self, scenarios: Sequence[Scenario]) -> None:
+        scenario, self._measurement_delay = scenarios[0], scenarios[0].link.measurement_delay
+        self._controller = BatchController(
+            station_config(scenario),
+            _starts(scenarios),
+            self._measurement_delay,
+            exact=not scenario.noise,
+        )
+        self._control = self._controller.start()
+        self._nobody = np.zeros(len(scenarios), np.bool_)
+        self._measurements = deque[Pose]()
+        self._commands = deque([self._control.drive.speeds] * scenario.link.command_delay)
+        self._tick = -1
+
+    def answer(self, z: Pose) -> Answers:
+        """At the next tick."""
+        self._tick += 1
+        if self._tick:
+            self._control = self._controller.advance(self._control)
+        self._measurements.append(z)
+        there = self._tick >= self._measurement_delay
+        arrived = self._measurements.popleft() if there else None
+        control = self._control = self._controller.answer(self._control, arrived)
+        sent = control.drive.speeds
+        self._commands.append(sent)
+        acts = self._nobody if control.found is None else control.found.acts
+        return Answers(control.pose, control.P, sent, self._commands.popleft(), control.lost, acts)
+
+
+class Impaired:
+    """Over links that do more than delay."""
+
+    def __init__(self, scenarios: Sequence[Scenario]) -> None:
+        schedules = [schedule_of(each) for each in scenarios]
+        delay = scenarios[0].link.measurement_delay
+        timetable = Timetable([each.course for each in schedules], delay)
+        config = station_config(scenarios[0])
+        self._controller = ImpairedController(config, _starts(scenarios), timetable)
+        self._beyond = np.array([each.beyond for each in schedules])
+
+    def answer(self, z: Pose) -> Answers:
+        """At the next tick."""
+        pose, P, sent, lost = self._controller.answer(z)
+        acts = self._beyond | self._controller.acts
+        return Answers(pose, P, sent, self._controller.applied(), lost, acts)
 
 
 def refused(speeds: Speeds, safety: Safety) -> NDArray[np.bool_]:

@@ -16,13 +16,13 @@ from laglab_control.batch.impaired.sent import Sent
 from laglab_control.batch.impaired.timetable import Timetable, Tokens
 from laglab_control.batch.law import drive, slowed, stand_still
 from laglab_control.batch.matrices import Symmetric
-from laglab_control.batch.robots import Estimate, Robots
-from laglab_control.batch.rows import Belief, Pose, Row, Speeds, headings
-from laglab_control.controller import FAR, StationConfig
+from laglab_control.batch.robots import Estimate, Robots, diverged, prior_of
+from laglab_control.batch.rows import Belief, Pose, Speeds, headings
+from laglab_control.controller import StationConfig
 from laglab_control.errors import ConfigError
 from laglab_control.estimators.family import estimator_kind
 from laglab_control.model import Matrix
-from laglab_control.motion import Motion, joined_along
+from laglab_control.motion import joined_along
 
 IMPAIRED: Mapping[str, Callable[[Robots, Record, Belief], Estimator]] = {
     "raw": Raw,
@@ -51,7 +51,7 @@ class ImpairedController:
     """As many controllers as there are initial estimates (3, robots) [m, m, rad], all else alike.
 
     `timetable` says what reaches whom when. `answer` once a tick, from tick 0 on.
-    Raises ConfigError when there is no such estimator for many robots.
+    Raises ConfigError when there is no such estimator for many robots, or R is not diagonal.
     """
 
     def __init__(
@@ -67,8 +67,7 @@ class ImpairedController:
         self._predicts = estimator_kind(config.estimator).predicts
         self._sent = Sent(robots, count, timetable.ticks, timetable.reach)
         self._record = Record(timetable, self._sent)
-        P = np.asarray(config.initial_covariance)[np.triu_indices(3)]
-        prior = Motion(*self._began, *[np.full(count, each) for each in P])
+        prior = prior_of(config, self._began)
         self._estimator = IMPAIRED[config.estimator](robots, self._record, prior)
         self._watch = Watch(count) if config.guard else None
         self._doubts = Doubts(timetable, self._sent, config.model.sample_time)
@@ -95,7 +94,7 @@ class ImpairedController:
             P = P if self._watch is None else self._watch.claimed(P)
             P = self._doubts.added(P, pose, tick)
         there = ~np.isnan(pose.theta) if P is None else np.True_
-        self._lost = self._lost | there & self._diverged(pose)
+        self._lost = self._lost | there & diverged(pose, self._config.law.goal, self._began)
         self._command(Estimate(pose, P), there & ~self._lost)
         self._sent.push(tick, self._last.speeds)
         return Answers(pose, P, self._last.speeds, self._lost)
@@ -117,14 +116,3 @@ class ImpairedController:
             speeds = Speeds(*[np.where(driven, each, 0.0) for each in speeds])
             at_goal = at_goal & driven
         self._last = self._last._replace(speeds=speeds, at_goal=at_goal)
-
-    def _diverged(self, pose: Pose) -> NDArray[np.bool_]:
-        """Not finite, or FAR from where it began and from the goal."""
-        x_goal, y_goal, _ = self._config.law.goal
-        x_began, y_began, _ = self._began
-        near = _within(pose, x_goal, y_goal) | _within(pose, x_began, y_began)
-        return ~(near & np.isfinite(pose.theta))
-
-
-def _within(pose: Pose, x: Row | float, y: Row | float) -> NDArray[np.bool_]:
-    return np.hypot(pose.x - x, pose.y - y) <= FAR

@@ -8,9 +8,10 @@ import numpy as np
 
 from laglab_control.batch.impaired.sent import Sent
 from laglab_control.batch.impaired.timetable import Flags, Timetable, Tokens, Whole
-from laglab_control.batch.matrices import Symmetric
+from laglab_control.batch.matrices import Symmetric, plus_square
 from laglab_control.batch.rows import Pose, Row, Speeds, headings
 from laglab_control.doubt import PATIENCE, STOPS_AFTER, Missed
+from laglab_control.motion import Way
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +48,7 @@ class Doubts:
         for distance, turn, length in self._missed(tick):
             aside = length / 2 * turn
             x, y = distance * cosine - aside * sine, distance * sine + aside * cosine
-            outer = x * x, x * y, x * turn, y * y, y * turn, turn * turn
-            P = Symmetric(*[each + more for each, more in zip(P, outer, strict=True)])
+            P = plus_square(P, Way(x, y, turn))
         return P
 
     def _missed(self, tick: int) -> Iterator["Missed[Row]"]:

@@ -10,7 +10,7 @@ import numpy as np
 from laglab_control.batch.impaired.estimators import Weighed
 from laglab_control.batch.impaired.past import Rows
 from laglab_control.batch.impaired.timetable import Flags, Whole
-from laglab_control.batch.matrices import Symmetric, weighted
+from laglab_control.batch.matrices import Symmetric, plus_square, weighted
 from laglab_control.batch.rows import Pose, Row
 from laglab_control.chi_square import chi_square_bound
 from laglab_control.guard.evidence import (
@@ -65,11 +65,7 @@ class Watch:
         """P, and b b^T where the innovations suggest an error b."""
         if not self._statistic.any():
             return P
-        x, y, theta = self._mean
-        return Symmetric(
-            *(P.xx + x * x, P.xy + x * y, P.xt + x * theta),
-            *(P.yy + y * y, P.yt + y * theta, P.tt + theta * theta),
-        )
+        return plus_square(P, Way(*self._mean))
 
     def _weigh(self, robots: Whole, news: Rows, weights: Symmetric) -> None:
         there = self._there[robots] + 1

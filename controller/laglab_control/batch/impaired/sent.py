@@ -7,6 +7,7 @@ from laglab_control.batch.impaired.past import Past, Rows
 from laglab_control.batch.impaired.timetable import Tokens, Whole
 from laglab_control.batch.robots import Robots, composed
 from laglab_control.batch.rows import Belief, Pose, Row, Speeds, headings
+from laglab_control.flight import MEMORY
 from laglab_control.motion import Motion, Way
 
 MOTION = 9
@@ -29,7 +30,8 @@ class Sent:
         self._led = Past(reach + 2, MOTION + 2, count)
         standing = robots.motion(Speeds(np.zeros(count), np.zeros(count)))
         for tick in range(-reach, 1):
-            covariance = [(tick + reach) * each for each in standing[3:]]
+            # from where it does not depend on who is in this batch
+            covariance = [(tick + MEMORY) * each for each in standing[3:]]
             self._led.keep(tick, [*np.zeros((3, count)), *covariance, *np.zeros((2, count))])
 
     def push(self, tick: int, u: Speeds) -> None:

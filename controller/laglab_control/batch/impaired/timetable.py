@@ -77,11 +77,6 @@ class Course(NamedTuple):
         back += [self.arrivals.tick - self.arrivals.s, self.missing.tick - self.missing.j]
         return int(self.delay.max()) + max(int(each.max(initial=0)) for each in back)
 
-    @property
-    def least_delay(self) -> int:
-        """Ticks that the fastest measurement takes."""
-        return int((self.arrivals.tick - self.arrivals.s).min(initial=len(self.known)))
-
 
 class NewsNow(NamedTuple):
     """Of one tick."""
@@ -115,7 +110,7 @@ class MissingNow(NamedTuple):
 class Timetable:
     """The courses of many robots, tick by tick."""
 
-    def __init__(self, courses: Sequence[Course]) -> None:
+    def __init__(self, courses: Sequence[Course], measurement_delay: int) -> None:
         self.robots = len(courses)
         self.ticks = len(courses[0].delay)
         self.applied = _stacked([each.applied for each in courses])
@@ -130,7 +125,7 @@ class Timetable:
         self.missing = self._missing([each.missing for each in courses])
         self.reach = max(each.reach for each in courses)
         """So many ticks back anything at all refers."""
-        self.least_delay = min(each.least_delay for each in courses)
+        self.least_delay = measurement_delay
         """No measurement takes fewer ticks."""
 
     def arrivals_of(self, tick: int, robots: Whole) -> list[ArrivalsNow]:

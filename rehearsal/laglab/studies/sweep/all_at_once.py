@@ -22,9 +22,9 @@ def all_at_once(cells: Sequence[Cell]) -> list[Judgements]:
     Cells that differ in nothing but what the link does besides its delays are one batch: the wider
     it is, the less a robot costs in it. Raises RunError.
     """
-    groups = defaultdict[str, list[int]](list)
+    groups = defaultdict[tuple[bool, str], list[int]](list)
     for number, cell in enumerate(cells):
-        groups[_all_but_impairments(cell.scenario)].append(number)
+        groups[_in_common(cell.scenario)].append(number)
     judged: dict[int, Judgements] = {}
     for numbers in groups.values():
         together = _together([cells[number] for number in numbers])
@@ -32,12 +32,12 @@ def all_at_once(cells: Sequence[Cell]) -> list[Judgements]:
     return [judged[number] for number in range(len(cells))]
 
 
-def _all_but_impairments(scenario: Scenario) -> str:
-    """What robots of one batch must have in common."""
+def _in_common(scenario: Scenario) -> tuple[bool, str]:
+    """What robots of one batch have: whether their link is ideal, and all but its impairments."""
     if is_ideal(scenario):
-        return scenario.model_dump_json()
+        return True, scenario.model_dump_json()
     delays = scenario.link.model_dump(include={"command_delay", "measurement_delay"})
-    return scenario.model_copy(update={"link": LinkTable(**delays)}).model_dump_json()
+    return False, scenario.model_copy(update={"link": LinkTable(**delays)}).model_dump_json()
 
 
 def _together(cells: Sequence[Cell]) -> Iterator[Judgements]:

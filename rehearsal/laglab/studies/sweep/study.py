@@ -62,11 +62,6 @@ class Study:
         """All of them."""
         return self.points * len(self.seeds)
 
-    @property
-    def cell_count(self) -> int:
-        """How many cells there are."""
-        return self.points * -(-len(self.seeds) // MOST_SEEDS)
-
     def cells(self, origin: str | None = None) -> Iterator[Cell]:
         """One after the other; `origin`, where it is not of here and now, as a folder has it."""
         origin, base = origin or self.origin, self._base

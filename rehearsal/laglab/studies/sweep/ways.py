@@ -13,8 +13,8 @@ TICK_ALONE = 160e-6
 """[s] A tick of a run by itself takes about so long, with both sides and the bytes between them."""
 TICK_OF_A_BATCH, TICK_IN_A_BATCH = 400e-6, 0.8e-6
 """[s] A tick of however many robots, and what each of them adds."""
-TICK_IMPAIRED = 40e-6
-"""[s] A tick of one robot of many on an impaired link."""
+TICK_IMPAIRED = 75e-6
+"""[s] A tick of one robot of many on an impaired link, its schedule included."""
 CROWD = 200
 """Robots on impaired links: more of them would not be cheaper any more."""
 RUN_ALONE = 0.02
@@ -55,5 +55,5 @@ def seconds(cell: Cell) -> float:
     if not how(cell).batch:
         return robots * (RUN_ALONE + ticks * TICK_ALONE)
     if not is_ideal(cell.scenario):
-        return robots * ticks * TICK_IMPAIRED
+        return ticks * (TICK_OF_A_BATCH + robots * TICK_IMPAIRED)
     return ticks * (TICK_OF_A_BATCH + robots * TICK_IN_A_BATCH)
