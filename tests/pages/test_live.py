@@ -198,6 +198,7 @@ def test_a_hundred_readers_that_do_not_read_hold_nobody(
 ) -> None:
     run = live(*REALTIME, "--duration", "3")
     stalled(100, run.address)
+    assert run.asked("GET", "/") == 200, "whoever reads is answered meanwhile"
     assert run.ended() == 0
     assert open_run(tmp_path / "out").summary.ticks == 300
     assert freed(run.port)

@@ -9,7 +9,8 @@ import pytest
 from msgspec.structs import replace
 from PIL import Image
 
-from laglab import Run, load_study, sweep
+from laglab import Run, load_study, run, sweep
+from laglab.results.link_view import link_view
 from laglab.results.report import report_html, save_report
 from laglab.results.report.reading import tables_of
 from laglab.results.run import Kept
@@ -161,8 +162,23 @@ def test_a_long_run_is_thinned_and_keeps_its_peaks(radio: Run) -> None:
         None,
         Kept(trace, tables, {}),
     )
-    assert tables_of(long, 5_000).commands["delay"].max() == 100
+    assert tables_of(long, link_view(long), 5_000).commands["delay"].max() == 100
     assert len(report_html([long])) < MOST_BYTES
+
+
+def test_what_is_hatched_is_what_was_measured(tab: Tab, page: Path) -> None:
+    """An event stands in for the link, outages and all; a run may end before an outage does."""
+    events = [{"at": 0.4, "duration": 0.2, "link": {"outages": [[0.5, 0.8]]}}]
+    events += [{"at": 0.9, "duration": 1.0, "link": {"loss": 1.0}}]
+    base = {"link.command.outages": [[0.45, 0.1]], "link.measurement_delay": 0}
+    made = run("lab", {**base, "link.event": events, "duration": 1.2})
+    opened(tab, page, [made])
+    hatched = tab.value(
+        "Array.from(Bokeh.documents[0].all_models).filter(m => m.type === 'BoxAnnotation'"
+        " && m.hatch_pattern === '/').map(m => m.left.toFixed(2) + '-' + m.right.toFixed(2))"
+    )
+    measured = {f"{span.start:.2f}-{span.end:.2f}" for span in link_view(made).outages}
+    assert set(hatched) == measured == {"0.50-0.60", "0.90-1.21"}
 
 
 def test_a_study_is_a_page_of_maps(tab: Tab, tmp_path: Path) -> None:

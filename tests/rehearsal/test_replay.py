@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from laglab.command import main
+from laglab.results.replaying import replayed_run
+from laglab.results.shadows import read_shadow
 from laglab_gateway import read_trace
 from laglab_protocol import Measurement, Sender, Tick, read_tlog, tlog_record
 
@@ -101,3 +103,21 @@ def test_a_tick_beyond_the_run_is_none_of_it(run, stations_estimates, tmp_path):
     out = tmp_path / "beyond"
     assert replay(log, "--estimator", "delayed-ekf", "--out", out) == 0
     assert np.array_equal(estimates(out / "delayed-ekf.csv")[:201], stations_estimates)
+
+
+def test_the_page_of_a_replay_has_the_numbers_of_what_was_replayed(run, tmp_path):
+    assert replay(run / "robot.tlog", "--estimator", "ekf", "--out", tmp_path / "out") == 0
+    summary = replayed_run(run, {"ekf": read_shadow(tmp_path / "out" / "ekf.csv")}).summary
+    assert summary.compare.keys() == {"delayed-ekf", "ekf"}
+    assert summary.compare["delayed-ekf"] == summary.rms_error
+    x = read_trace(run / "trace.csv")["x"]
+    error = estimates(tmp_path / "out" / "ekf.csv")[20:, 0] - x[20:]
+    assert summary.compare["ekf"].x == pytest.approx(np.sqrt(np.mean(error**2)), rel=1e-9)
+
+
+def test_of_a_run_that_was_killed_the_log_is_named(run, capsys):
+    (run / "summary.json").unlink()
+    with pytest.raises(SystemExit) as ended:
+        main(["figure", str(run), "--out", "x.png"])
+    assert ended.value.code == 2
+    assert f"can be replayed: laglab replay {run / 'robot.tlog'}" in capsys.readouterr().err

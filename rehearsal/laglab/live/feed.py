@@ -88,7 +88,9 @@ class Feed(Recorder):
     def _tell(self) -> None:
         rows, self._rows = self._rows, Rows()
         every = -(-len(rows.trace) // MOST_TICKS) or 1
-        rows.trace, rows.claims = _last(rows.trace[::every]), _last(rows.claims[::every])
+        rows.trace = _last(rows.trace[::every])
+        kept = {row.tick for row in rows.trace}
+        rows.claims = [each for each in rows.claims if each.tick in kept]
         rows.arrivals, rows.timing = _last(rows.arrivals[::every]), _last(rows.timing[::every])
         rows.link = _last([row for row in rows.link if row.fate != "delivered"])
         rows.stopped = self._controls.stopped()

@@ -42,7 +42,9 @@ def serve(order: LiveOrder, tell: Tell) -> None:
     try:
         asyncio.run(_Server(order).run(tell))
     except OSError as error:
-        tell(Failed(f"--live: cannot listen at {order.host}:{order.port}: {error.strerror}", False))
+        code = error.errno or 0
+        why = os.strerror(code) if code > 0 else error.strerror  # the resolver's are below 0
+        tell(Failed(f"--live: cannot listen at {order.host}:{order.port}: {why}", False))
 
 
 class _Server(asyncio.DatagramProtocol):

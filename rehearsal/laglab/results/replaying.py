@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 from rich.table import Table
@@ -20,7 +21,7 @@ from laglab.results.figures.panels import (
     marked,
     symmetric,
 )
-from laglab.results.numbers import deviation, robot_pose
+from laglab.results.numbers import deviation, rms_error, robot_pose
 from laglab.results.run import Kept, Run, open_run
 from laglab.results.shadows import Shadow
 from laglab.scenario import Scenario
@@ -79,7 +80,12 @@ def replayed_run(directory: Path, replays: Replays) -> Run:
     tables = {name: read_columns(directory / name, kind) for name, kind in ROWS.items()}
     estimator = run.scenario.estimator.model_copy(update={"compare": tuple(replays)})
     scenario = run.scenario.model_copy(update={"estimator": estimator})
-    return Run(scenario, run.summary, directory, Kept(run.trace, tables, replays))
+    m = scenario.link.measurement_delay
+    others = {name: rms_error(off(each, run.trace)[1][m:]) for name, each in replays.items()}
+    summary = run.summary
+    compare = {summary.estimator: summary.rms_error, **others} if replays else {}
+    summary = msgspec.structs.replace(summary, compare=compare)
+    return Run(scenario, summary, directory, Kept(run.trace, tables, replays))
 
 
 def _spelled(numbers: Sequence[float]) -> str:

@@ -109,7 +109,7 @@ class Run:
         station = self.summary.station
         return [alarm.tick for alarm in station.alarms] if station else []
 
-    @property
+    @cached_property
     def drawn(self) -> Trace:
         """As much of the trace as a figure shows."""
         return _thinned(self.trace) if self.kept or self._is_short else self._read_thinned()
@@ -180,7 +180,9 @@ class Run:
         ]
         whole = {name: np.concatenate([each[name] for each in pieces]) for name in pieces[0]}
         for name in self.scenario.estimator.compare:
-            whole |= beside(whole, _at(self._shadow(name), whole["tick"]), name)
+            seen = [_at(piece, whole["tick"]) for piece in self.shadow_pieces(name)]
+            shadow = {column: np.concatenate([each[column] for each in seen]) for column in seen[0]}
+            whole |= beside(whole, shadow, name)
         return whole
 
 

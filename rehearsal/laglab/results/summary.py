@@ -8,7 +8,7 @@ from msgspec import Struct
 
 from laglab.errors import NoRunError
 from laglab.results.whole import whole_file
-from laglab_gateway import LinkReport, TimingReport
+from laglab_gateway import TLOG_FILE, LinkReport, TimingReport
 from laglab_station import StationReport
 
 SUMMARY_FILE = "summary.json"
@@ -90,6 +90,12 @@ def read_summary(directory: Path) -> Summary:
         if version == SCHEMA_VERSION:
             return msgspec.json.decode(data, type=Summary)
     except OSError as error:
+        log = directory / TLOG_FILE
+        if isinstance(error, FileNotFoundError) and log.exists():
+            raise NoRunError(
+                f"{directory} has no {SUMMARY_FILE}: that run was killed, or is not over; its log "
+                f"can be replayed: laglab replay {log}"
+            ) from error
         raise NoRunError(f"{path} cannot be read: {error.strerror}") from error
     except (msgspec.DecodeError, RecursionError) as error:
         raise NoRunError(f"{path} is not a run's summary: {error}") from error

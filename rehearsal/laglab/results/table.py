@@ -93,7 +93,8 @@ def _timing_row(timing: TimingReport) -> dict[str, str]:
 
 def _station_rows(station: StationReport) -> dict[str, str]:
     """What the station found out by itself: the delays, and its own speed."""
-    delays = f"n {station.n_seen}, m {station.m_seen} ticks"
+    n, m = ("?" if each is None else each for each in (station.n_seen, station.m_seen))
+    delays = f"n {n}, m {m} ticks"
     rows = {"delays as the station saw them": delays}
     if station.alarms:
         rows["alarms at ticks"] = alarm_ticks(station)

@@ -14,6 +14,7 @@ from bokeh.resources import Resources
 from markupsafe import Markup
 from msgspec import Struct
 
+from laglab.results.link_view import Span
 from laglab.results.report.plane import Plane, path_plot
 from laglab.results.report.plots import Axes, Plots, time_plots
 from laglab.results.report.sources import sources_of
@@ -53,6 +54,8 @@ class Panel:
     verdict: str = ""
     mood: str = ""
     notices: Sequence[str] = ()
+    quiet: Sequence[Span] = ()
+    """When nothing got through the link."""
 
 
 @dataclass(frozen=True)
@@ -117,7 +120,7 @@ def html(page: Page, panels: Sequence[Panel]) -> str:
 def _plots(panel: Panel, number: int, axes: Axes, plane: Plane, high: int) -> Plots:
     sources = sources_of(panel.tables, number)
     path = path_plot(sources, panel.scenario, plane, panel.measured, high)
-    return {"path": path} | time_plots(sources, panel.scenario, axes, panel.timed)
+    return {"path": path} | time_plots(sources, panel.scenario, axes, panel.timed, panel.quiet)
 
 
 def _settings(panels: Sequence[Panel]) -> Markup:

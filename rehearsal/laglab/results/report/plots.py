@@ -17,7 +17,7 @@ from bokeh.models.annotations import BoxAnnotation, Legend, Span, Title
 from bokeh.models.renderers import GlyphRenderer
 from bokeh.plotting import figure
 
-from laglab.results.report.silences import Silence, silences
+from laglab.results.link_view import Span as Time
 from laglab.results.report.sources import Sources
 from laglab.results.report.tables import LANES
 from laglab.scenario import Scenario
@@ -72,8 +72,11 @@ Plots = dict[str, figure]
 """By kind, in the order in which they stand on the page."""
 
 
-def time_plots(sources: Sources, scenario: Scenario, axes: Axes, timed: bool) -> Plots:
-    """Errors, heading, speeds, link; how late ticks began, if they were `timed`."""
+def time_plots(
+    sources: Sources, scenario: Scenario, axes: Axes, timed: bool, quiet: Sequence[Time]
+) -> Plots:
+    """Errors, heading, speeds, link; how late ticks began, if they were `timed`; `quiet`: when
+    nothing got through."""
     shadows = scenario.estimator.compare
     plots = {
         f"{axis} error": _error_plot(sources, axes, axis, label, unit, shadows)
@@ -95,7 +98,7 @@ def time_plots(sources: Sources, scenario: Scenario, axes: Axes, timed: bool) ->
     if timed:
         plots["timing"] = _timing_plot(sources, axes)
     for plot in plots.values():
-        _mark_times(plot, sources, silences(scenario))
+        _mark_times(plot, sources, quiet)
     return plots
 
 
@@ -261,10 +264,10 @@ def _timing_plot(sources: Sources, axes: Axes) -> figure:
     return plot
 
 
-def _mark_times(plot: figure, sources: Sources, quiet: Sequence[Silence]) -> None:
-    """When nothing passed, by the scenario; and the time that the page looks at."""
-    for silence in quiet:
-        box = BoxAnnotation(left=silence.start, right=silence.end, level="underlay")
+def _mark_times(plot: figure, sources: Sources, quiet: Sequence[Time]) -> None:
+    """When nothing got through, and the time that the page looks at."""
+    for time in quiet:
+        box = BoxAnnotation(left=time.start, right=time.end, level="underlay")
         box.update(fill_color="#bbbbbb", fill_alpha=0.3, line_color=None, hatch_pattern="/")
         box.update(hatch_color="#999999", hatch_alpha=0.4, hatch_scale=8, propagate_hover=True)
         plot.add_layout(box)

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from laglab.results.columns import Columns, columns_of, joined
+from laglab.results.link_view import LinkView
 from laglab.results.report.tables import (
     ALARM,
     BY_ITSELF,
@@ -25,7 +26,7 @@ from laglab_gateway import ARRIVALS_FILE, CLAIMS_FILE, LINK_FILE, ROWS, TIMING_F
 MOST_MARKS = 2_000
 
 
-def tables_of(run: Run, most: int) -> Tables:
+def tables_of(run: Run, view: LinkView, most: int) -> Tables:
     """With at most so many ticks. Raises: ResultsError, TraceError."""
     whole = run.drawn
     trace = {name: column[:: _stride(len(whole["tick"]), most)] for name, column in whole.items()}
@@ -38,7 +39,7 @@ def tables_of(run: Run, most: int) -> Tables:
         ticks,
         joined(_thinned(run, ARRIVALS_FILE, lambda each: _latest(each, "command", every))),
         joined(_thinned(run, ARRIVALS_FILE, lambda each: _latest(each, "measurement", every))),
-        _marks_of(run),
+        _marks_of(run, view),
         joined(_thinned(run, TIMING_FILE, lambda each: _worst(each, scenario.sample_time, every))),
     )
 
@@ -86,17 +87,14 @@ def _largest(columns: Columns, by: str, every: int) -> Columns:
     return {name: column[kept] for name, column in columns.items()}
 
 
-def _marks_of(run: Run) -> Columns:
-    Ts, first = run.scenario.sample_time, float(run.drawn["tick"][0])
-    summary = run.summary
+def _marks_of(run: Run, view: LinkView) -> Columns:
+    Ts = run.scenario.sample_time
     found = [_few(joined(_thinned(run, LINK_FILE, lambda each: losses(each, Ts))))]
     found.append(_few(joined(_thinned(run, ARRIVALS_FILE, refusals))))
-    if link := summary.link:
-        for ticks, what in ((link.failsafe_stops, BY_ITSELF), (link.emergency_ticks, EMERGENCY)):
-            found.append(marks([(tick - first) * Ts for tick in ticks], STOPPED, what))
-    if station := summary.station:
-        times = [(alarm.tick - first) * Ts for alarm in station.alarms]
-        found.append(marks(times, ALARM, [alarm.cause for alarm in station.alarms]))
+    found.append(marks([span.start for span in view.stopped], STOPPED, BY_ITSELF))
+    found.append(marks(view.emergencies, STOPPED, EMERGENCY))
+    alarms = run.summary.station.alarms if run.summary.station else ()
+    found.append(marks(view.alarms, ALARM, [alarm.cause for alarm in alarms]))
     return {
         name: np.concatenate([np.asarray(each[name], dtype=kind) for each in found])
         for name, kind in (("time", float), ("lane", object), ("what", object))

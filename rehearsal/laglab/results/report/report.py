@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from laglab.results.figures import labels, title
+from laglab.results.link_view import link_view
 from laglab.results.numbers import is_measured
 from laglab.results.report.page import HERE, Page, Panel, html, text_of
 from laglab.results.report.reading import tables_of
@@ -18,12 +20,12 @@ MOST_RUNS = 8
 
 def report_html(runs: Sequence[Run]) -> str:
     """One file that needs no other. Raises: ResultsError, TraceError."""
-    names = _names(runs)
+    names = labels(runs)
     panels = [
         _panel(run, name, MOST_ROWS // len(runs)) for run, name in zip(runs, names, strict=True)
     ]
     page = Page(
-        title=" and ".join(names) if len(runs) > 1 else _title(runs[0]),
+        title=" and ".join(names) if len(runs) > 1 else title(runs[0].scenario),
         scripts=[text_of(HERE, "player.js")],
         rows=_compared([run.summary for run in runs]),
         duration=max(float(panel.tables.ticks["time"][-1]) for panel in panels),
@@ -38,20 +40,9 @@ def save_report(runs: Sequence[Run], path: Path) -> None:
         file.write(text.encode())
 
 
-def _title(run: Run) -> str:
-    return f"{run.scenario.name}: {run.scenario.gist}"
-
-
-def _names(runs: Sequence[Run]) -> list[str]:
-    """By their folders; by number where two of these have the same name."""
-    names = [run.directory.name if run.directory else run.scenario.name for run in runs]
-    if len(set(names)) == len(names):
-        return names
-    return [f"{number}: {name}" for number, name in enumerate(names, 1)]
-
-
 def _panel(run: Run, name: str, most: int) -> Panel:
-    tables, summary = tables_of(run, most), run.summary
+    view, summary = link_view(run), run.summary
+    tables = tables_of(run, view, most)
     return Panel(
         name=name,
         scenario=run.scenario,
@@ -62,6 +53,7 @@ def _panel(run: Run, name: str, most: int) -> Panel:
         verdict=summary.verdict,
         mood="good" if summary.converged else "bad",
         notices=warnings(summary),
+        quiet=view.outages,
     )
 
 
