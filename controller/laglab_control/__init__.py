@@ -40,6 +40,14 @@ from laglab_control.flight import Echo
 from laglab_control.guard import Alarm, Guard
 from laglab_control.laws import DelayMargin, Demand, Law, delay_margin
 from laglab_control.model import Model, NonlinearModel
+from laglab_control.plugins import (
+    Plugin,
+    PluginError,
+    find_plugin,
+    first_line,
+    installed_plugins,
+    is_module_class,
+)
 from laglab_control.replay import Replay, constant_delay, replay
 from laglab_control.robot import RobotModel
 
@@ -69,6 +77,8 @@ __all__ = [
     "Model",
     "NonlinearModel",
     "Parameters",
+    "Plugin",
+    "PluginError",
     "Popf",
     "PopfExact",
     "PrintedController",
@@ -85,7 +95,11 @@ __all__ = [
     "chi_square_bound",
     "constant_delay",
     "delay_margin",
+    "find_plugin",
+    "first_line",
+    "installed_plugins",
     "is_far",
+    "is_module_class",
     "normalised_squared",
     "replay",
     "wrap",

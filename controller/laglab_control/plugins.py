@@ -1,0 +1,87 @@
+"""What users bring, by name: `module:Class`, or an entry point of an installed distribution."""
+
+from collections.abc import Iterator
+from importlib import import_module
+from importlib.metadata import EntryPoint, entry_points
+from typing import Literal, NamedTuple, Protocol
+
+from laglab_control.errors import ControlError
+
+Group = Literal["laglab.estimators", "laglab.laws", "laglab.plants"]
+"""The entry points' groups."""
+
+
+class PluginError(ControlError):
+    """What was named cannot be had, or does not do what it must; the text names it."""
+
+
+class Maker(Protocol):
+    """A class that a user brings, or a function that makes what one would."""
+
+    def __call__(self, *told: object, **options: object) -> object:
+        """The estimator, law or plant."""
+        ...
+
+
+class Plugin(NamedTuple):
+    """An entry point, as it is listed."""
+
+    name: str
+    origin: str
+    """The distribution that brought it, and its version."""
+    description: str
+    """The first line of its docstring, or why it cannot be loaded."""
+
+
+def is_module_class(name: str) -> bool:
+    """Whether a name is written as `module:Class`."""
+    return ":" in name
+
+
+def find_plugin(group: Group, name: str, shipped: tuple[str, ...] = ()) -> Maker:
+    """What is called so: `module:Class`, or an entry point of the group.
+
+    `shipped` are the names that are known without it, for the message. Raises PluginError: there
+    is none, or it cannot be loaded.
+    """
+    if is_module_class(name):
+        return _loaded(EntryPoint(name, name, group), name)
+    entries = {entry.name: entry for entry in entry_points(group=group)}
+    if name not in entries:
+        known = ", ".join((*shipped, *sorted(entries)))
+        raise PluginError(f"no {_singular(group)} {name!r}: take one of {known}, or module:Class")
+    return _loaded(entries[name], name)
+
+
+def installed_plugins(group: Group) -> Iterator[Plugin]:
+    """The entry points of the group, by name; what cannot be loaded is told, not raised."""
+    for entry in sorted(entry_points(group=group), key=lambda entry: entry.name):
+        origin = f"{entry.dist.name} {entry.dist.version}" if entry.dist else entry.value
+        try:
+            description = first_line(_loaded(entry, entry.name))
+        except PluginError as error:
+            description = str(error)
+        yield Plugin(entry.name, origin, description)
+
+
+def first_line(made_by: object) -> str:
+    """Of the docstring; nothing where there is none."""
+    lines = (getattr(made_by, "__doc__", None) or "").strip().splitlines()
+    return lines[0] if lines else ""
+
+
+def _loaded(entry: EntryPoint, name: str) -> Maker:
+    module, _, attribute = entry.value.partition(":")
+    try:
+        found: object = import_module(module)
+        for part in attribute.split("."):
+            found = getattr(found, part)
+    except Exception as error:  # whatever a stranger's module does when it is imported
+        raise PluginError(f"{name}: {type(error).__name__}: {error}") from error
+    if not callable(found):
+        raise PluginError(f"{name}: {entry.value} is no class, but {found!r}")
+    return found
+
+
+def _singular(group: Group) -> str:
+    return group.removeprefix("laglab.").removesuffix("s")
