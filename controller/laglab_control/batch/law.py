@@ -39,15 +39,19 @@ def drive(
     x, y, theta = pose
     x_goal, y_goal, theta_goal = law.goal
     offset = x_goal - x, y_goal - y
-    rho, psi = _polar_coordinates(*offset) if heading is None else _nearly_polar(*offset)
-    alpha, phi = wrapped(psi - theta), wrapped(psi - theta_goal)
-    ahead = headings(alpha) if heading is None else _seen(offset, rho, heading)
+    if heading is None:
+        rho, psi = _polar_coordinates(*offset)
+        alpha, phi = wrapped(psi - theta), wrapped(psi - theta_goal)
+        ahead = headings(alpha)
+    else:
+        rho, alpha, ahead = _seen(*offset, heading)
+        phi = wrapped(alpha + (theta - theta_goal))
     speeds = _polar(law, rho, alpha, ahead, phi)
     if law.goal_tolerance is None:
         at_goal = np.zeros(len(rho), np.bool_)
     else:
         near, leaving = rho < law.goal_tolerance, rho <= 2 * law.goal_tolerance
-        at_goal = np.where(at_goal, leaving, near)
+        at_goal = near | (at_goal & leaving)
     if at_goal.any():
         turn = law.lambda_ / 2 * wrapped(theta_goal - theta)
         speeds = Speeds(np.where(at_goal, 0.0, speeds.v), np.where(at_goal, turn, speeds.omega))
@@ -65,24 +69,34 @@ def slowed(law: Law, speeds: Speeds, P: Symmetric) -> Speeds:
     return Speeds(share * speeds.v, share * speeds.omega)
 
 
-def _nearly_polar(dx: Row, dy: Row) -> tuple[Row, Row]:
-    return np.sqrt(dx * dx + dy * dy), np.arctan2(dy, dx)
-
-
-def _seen(offset: tuple[Row, Row], rho: Row, heading: Heading) -> Heading:
-    """Cosine and sine of the angle between the heading and (dx, dy)."""
-    (dx, dy), (c, s) = offset, heading
-    scale = 1 / rho
-    return (dx * c + dy * s) * scale, (dy * c - dx * s) * scale
+def _seen(dx: Row, dy: Row, heading: Heading) -> tuple[Row, Row, Heading]:
+    """Length and direction of each (dx, dy) as seen from the robot; cosine and sine of that."""
+    c, s = heading
+    along, across = dx * c, dy * c
+    along += dy * s
+    across -= dx * s
+    rho = along * along
+    rho += across * across
+    np.sqrt(rho, rho)
+    alpha = np.arctan2(across, along)
+    along /= rho
+    across /= rho
+    return rho, alpha, (along, across)
 
 
 def _polar(law: Law, rho: Row, alpha: Row, ahead: Heading, phi: Row) -> Speeds:
     """(4); `ahead`: cosine and sine of alpha."""
     cosine, sine = ahead
     forward = law.gamma * cosine
+    sinc = sine / alpha
     straight = alpha == 0.0
-    sinc = (sine + straight) / (alpha + straight)
-    return Speeds(forward * rho, law.lambda_ * alpha + forward * sinc * (alpha + law.h * phi))
+    if straight.any():
+        sinc[straight] = 1.0
+    sinc *= forward
+    sinc *= alpha + law.h * phi
+    sinc += law.lambda_ * alpha
+    forward *= rho
+    return Speeds(forward, sinc)
 
 
 def _clamped(law: Law, speeds: Speeds) -> Speeds:
