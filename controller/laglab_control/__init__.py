@@ -38,7 +38,21 @@ from laglab_control.estimators import (
 from laglab_control.estimators.kalman import normalised_squared
 from laglab_control.flight import Echo
 from laglab_control.guard import Alarm, Guard
-from laglab_control.laws import DelayMargin, Demand, Law, PolarLaw, SpeedLimits, delay_margin
+from laglab_control.laws import (
+    LAWS,
+    Circle,
+    DelayMargin,
+    Demand,
+    Eight,
+    Law,
+    Path,
+    PolarLaw,
+    Reference,
+    SpeedLimits,
+    TrackingLaw,
+    Waypoints,
+    delay_margin,
+)
 from laglab_control.model import Model, NonlinearModel
 from laglab_control.plugins import (
     Plugin,
@@ -55,10 +69,12 @@ __all__ = [
     "ESTIMATORS",
     "FAR",
     "INITIAL_VARIANCE",
+    "LAWS",
     "Alarm",
     "Applied",
     "CalibratingEkf",
     "Calibration",
+    "Circle",
     "ConfigError",
     "Control",
     "ControlError",
@@ -67,6 +83,7 @@ __all__ = [
     "DelayedEkf",
     "Demand",
     "Echo",
+    "Eight",
     "Ekf",
     "Erratum",
     "Estimator",
@@ -77,12 +94,14 @@ __all__ = [
     "Model",
     "NonlinearModel",
     "Parameters",
+    "Path",
     "Plugin",
     "PluginError",
     "PolarLaw",
     "Popf",
     "PopfExact",
     "PrintedController",
+    "Reference",
     "Replay",
     "ReplayedInputs",
     "Rewinding",
@@ -93,6 +112,8 @@ __all__ = [
     "State",
     "StationConfig",
     "Taken",
+    "TrackingLaw",
+    "Waypoints",
     "WheelScales",
     "chi_square_bound",
     "constant_delay",

@@ -16,6 +16,8 @@ from laglab.studies.sweep.cell import Cell
 from laglab.version import code_version
 from laglab_control import FAR
 
+FILES = ("link.replay", "law.path")
+"""Keys that name one."""
 MOST_SEEDS = 250
 """Of one cell: as many runs as are one task, with or without a batch."""
 
@@ -85,8 +87,9 @@ class Study:
 
     def _files(self) -> Iterator[tuple[str, str]]:
         """That the scenarios name, and a hash of each."""
-        replay = self.scenario.link.replay
-        named = [*([str(replay)] if replay else []), *map(str, self.grid.get("link.replay", ()))]
+        link, law = self.scenario.link, self.scenario.law
+        named = [str(each) for each in (link.replay, law.path) if each]
+        named += [str(each) for key in FILES for each in self.grid.get(key, ())]
         for name in named:
             path = Path(name)
             if path.is_file():
