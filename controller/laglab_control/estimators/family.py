@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from laglab_control.errors import ConfigError
+from laglab_control.estimators.brought import brought_estimator
 from laglab_control.estimators.calibrating_ekf import CalibratingEkf
 from laglab_control.estimators.delayed_ekf import DelayedEkf
 from laglab_control.estimators.ekf import Ekf
@@ -14,6 +15,7 @@ from laglab_control.estimators.raw import Raw
 from laglab_control.estimators.rewinding import Rewinding
 from laglab_control.estimators.wheel_scales import WheelScales
 from laglab_control.estimators.windows import RigidMotions
+from laglab_control.plugins import Maker, find_plugin, first_line
 from laglab_control.robot import RobotModel
 
 
@@ -63,8 +65,23 @@ ESTIMATORS: Mapping[str, EstimatorKind] = {
 }
 
 
-def estimator_kind(name: str) -> EstimatorKind:
-    """The estimator of that name. Raises ConfigError, listing the names, when there is none."""
+def estimator_kind(name: str, options: Mapping[str, object] | None = None) -> EstimatorKind:
+    """The estimator of that name: shipped, of a plug-in, or `module:Class`.
+
+    Raises PluginError, listing the names, when there is none, and ConfigError for options of one
+    that has none.
+    """
+    told = dict(options or {})
     if name not in ESTIMATORS:
-        raise ConfigError(f"no estimator {name!r}: take one of {', '.join(ESTIMATORS)}")
+        return _brought(name, find_plugin("laglab.estimators", name, tuple(ESTIMATORS)), told)
+    if told:
+        raise ConfigError(f"estimator.options: {name} has none, so leave {', '.join(told)} out")
     return ESTIMATORS[name]
+
+
+def _brought(name: str, maker: Maker, options: dict[str, object]) -> EstimatorKind:
+    return EstimatorKind(
+        first_line(maker),
+        lambda model: brought_estimator(name, maker, model, options),
+        predicts=bool(getattr(maker, "predicts", True)),
+    )
