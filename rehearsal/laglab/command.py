@@ -10,6 +10,7 @@ from laglab import __version__
 from laglab.commands import (
     animate,
     bench,
+    check,
     compare,
     consistency,
     errata,
@@ -67,6 +68,7 @@ app.command("replay")(replay.replay)
 app.command("scenarios")(scenarios.scenarios)
 app.command("estimators")(estimators.estimators)
 app.command("laws")(estimators.laws)
+app.command("check")(check.check)
 app.command("scenario")(scenario.scenario)
 app.command("figure")(figure.figure)
 app.command("report")(report.report)

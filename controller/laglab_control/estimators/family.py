@@ -1,6 +1,7 @@
 """The estimators by name, for the robot."""
 
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from laglab_control.errors import ConfigError
@@ -28,17 +29,26 @@ class EstimatorKind(NamedTuple):
     """Whether it gives an estimate of the present, which can be extrapolated and reported."""
     learner: Callable[[RobotModel], Estimator[Any]] | None = None
     """What takes over when a guard finds that its model is wrong."""
+    admits: Mapping[str, str] = MappingProxyType({})
+    """Which checks of `laglab check` it does not hold, and why."""
 
+
+LATE_FOR_FRESH = {
+    "delays": "it compares a late measurement with where the robot is",
+    "NEES": "so it is surer than it may be",
+}
 
 ESTIMATORS: Mapping[str, EstimatorKind] = {
     "raw": EstimatorKind(
         "no filter and no prediction: the newest measurement",
         lambda _: Raw(),
         predicts=False,
+        admits={"delays": "it takes what was measured late for the present"},
     ),
     "ekf": EstimatorKind(
         "the plain EKF, which takes a late measurement for a fresh one",
         lambda model: Rewinding(Ekf(model)),
+        admits=LATE_FOR_FRESH,
     ),
     "popf": EstimatorKind(
         "the paper's filter",
@@ -47,6 +57,7 @@ ESTIMATORS: Mapping[str, EstimatorKind] = {
     "popf-printed": EstimatorKind(
         "the paper's filter with the innovation as (28) prints it",
         lambda model: Rewinding(Popf(model, innovation_at_k=True)),
+        admits=LATE_FOR_FRESH,
     ),
     "popf-exact": EstimatorKind(
         "the structure of popf with the true cross-covariances",
