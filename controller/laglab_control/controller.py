@@ -1,8 +1,8 @@
 """Estimate, extrapolate, command: the remote station's part of a tick, without messages."""
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from laglab_control.doubt import doubt
 from laglab_control.errors import ConfigError
+from laglab_control.estimators.brought import Brought
 from laglab_control.estimators.family import EstimatorKind, estimator_kind
 from laglab_control.estimators.interface import (
     Applied,
@@ -24,10 +25,11 @@ from laglab_control.estimators.interface import (
 from laglab_control.estimators.kalman import Belief, Innovation
 from laglab_control.flight import Echo, Flight, hear, send, take_off
 from laglab_control.guard import Alarm, Guard, Watched
-from laglab_control.laws.aicardi import STAND_STILL, Demand, Law, as_input
+from laglab_control.laws import STAND_STILL, Demand, Law, PolarLaw, SpeedLimits, as_input
 from laglab_control.limits import Ticks, check, covariance, finite_pose
 from laglab_control.model import Matrix, Vector
 from laglab_control.motion import Way, joined
+from laglab_control.plugins import PluginError
 from laglab_control.robot import RobotModel, Ways
 
 INITIAL_VARIANCE = 1e-4
@@ -47,12 +49,19 @@ def is_far(pose: Iterable[float], goal: Iterable[float]) -> bool:
 class StationConfig:
     """What the station is told. Poses [m, m, rad], delays in ticks.
 
-    `estimator` is one of ESTIMATORS. Raises ConfigError, naming the field, when one is not right.
+    `estimator` is one of ESTIMATORS, an installed plug-in, or `module:Class`. Raises PluginError
+    for one that cannot be had, and ConfigError, naming the field, when one is not right.
     """
 
     estimator: str = "popf"
+    estimator_options: Mapping[str, object] = field(default_factory=dict)
+    """Of one that somebody brought, which is made as `Class(model, **options)`."""
     model: RobotModel = field(default_factory=RobotModel)
-    law: Law = field(default_factory=Law)
+    law: Law = field(default_factory=PolarLaw)
+    limits: SpeedLimits = field(default_factory=SpeedLimits)
+    """Of the commands, whatever the law asks for."""
+    goal: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """What the run is about: whoever is FAR from it is lost."""
     initial_estimate: ArrayLike = (0.0, 0.0, 0.0)
     initial_covariance: ArrayLike = field(default_factory=lambda: np.eye(3) * INITIAL_VARIANCE)
     command_delay: Ticks = 0
@@ -60,18 +69,28 @@ class StationConfig:
     the delay m of a measurement is read from its own stamp."""
     guard: bool = False
     """Whether the estimator is watched (`Guard`)."""
+    first_tick: Ticks = 0
+    """The robot's tick that is the controller's tick 0: the law's time is the robot's."""
 
     def __post_init__(self) -> None:
-        estimator_kind(self.estimator)
+        estimator_kind(self.estimator, self.estimator_options)
         check(self)
         x = finite_pose(self.initial_estimate, "initial_estimate")
         P = covariance(self.initial_covariance, 3, "initial_covariance")
-        if is_far(x.tolist(), self.law.goal):
+        finite_pose(self.goal, "goal")
+        if is_far(x.tolist(), self.goal):
             raise ConfigError(
                 f"initial_estimate must be within {FAR:g} m of the goal, not {x.tolist()}"
             )
         object.__setattr__(self, "initial_estimate", x)
         object.__setattr__(self, "initial_covariance", P)
+
+
+def without_blind_guard(config: StationConfig) -> StationConfig:
+    """The same, and no guard around an estimator that does not show how wild a measurement is."""
+    estimator = estimator_kind(config.estimator, config.estimator_options).make(config.model)
+    blind = isinstance(estimator, Brought) and not estimator.is_watchable
+    return replace(config, guard=False) if blind else config
 
 
 class Control(NamedTuple):
@@ -80,7 +99,7 @@ class Control(NamedTuple):
     estimate: State
     flight: Flight
     drive: Demand
-    """The last command."""
+    """The last command, as sent, and the law's memory."""
     pose: Vector | None = None
     """The estimate (3,) [m, m, rad] after the tick's correction; None: there is none."""
     P: Matrix | None = None
@@ -100,7 +119,7 @@ class Controller:
     @cached_property
     def kind(self) -> EstimatorKind:
         """What the estimator is."""
-        return estimator_kind(self.config.estimator)
+        return estimator_kind(self.config.estimator, self.config.estimator_options)
 
     @cached_property
     def _began(self) -> list[float]:
@@ -114,9 +133,16 @@ class Controller:
 
     @cached_property
     def _guard(self) -> Guard | None:
+        if not self.config.guard:
+            return None
         model, kind = self.config.model, self.kind
-        learner = kind.learner(model) if kind.learner else None
-        return Guard(kind.make(model), model, learner) if self.config.guard else None
+        estimator = kind.make(model)
+        if isinstance(estimator, Brought) and not estimator.is_watchable:
+            raise PluginError(
+                f"estimator.guard: {estimator.name} has no method innovation(state), by which a "
+                "guard sees what is wild: leave the guard out"
+            )
+        return Guard(estimator, model, kind.learner(model) if kind.learner else None)
 
     def start(self) -> Control:
         """Tick 0, before its correction."""
@@ -148,6 +174,21 @@ class Controller:
 
         The robot is to stand still when there is no estimate to drive it by, or it has diverged.
         """
+        estimate, flight, last, pose, P = self.correct(control, measurements, echoes, recalled)
+        if pose is None or self.diverged(pose):
+            return Control(estimate, flight, STAND_STILL, pose, P)
+        tick = self.config.first_tick + flight.tick + flight.command_delay
+        drive = self.command(self._there(estimate, flight, last, pose), tick, last, P)
+        return Control(estimate, flight, drive, pose, P)
+
+    def correct(
+        self,
+        control: Control,
+        measurements: Sequence[Measured],
+        echoes: Sequence[Echo] = (),
+        recalled: Sequence[Applied] = (),
+    ) -> Control:
+        """The tick's correction alone; `drive` is still the last command."""
         estimate, flight, drive, *_ = control
         flight, inputs = hear(self._robot(estimate), flight, echoes, recalled)
         if self._guard and isinstance(estimate, Watched):
@@ -159,21 +200,21 @@ class Controller:
         if pose is not None and P is not None:
             unknown = doubt(flight, self.config.model, pose)
             P = P if unknown is None else P + unknown
-        return Control(estimate, flight, self._command(pose, P, flight, drive), pose, P)
+        return Control(estimate, flight, drive, pose, P)
 
-    def _command(
-        self, pose: Vector | None, P: Matrix | None, flight: Flight, last: Demand
-    ) -> Demand:
-        if pose is None or self.diverged(pose):
-            return STAND_STILL
-        law = self.config.law
-        demand = law.drive(self._at_arrival(pose, flight, last), last.at_goal)
-        return demand if P is None else law.slowed(demand, P)
+    def command(self, there: Way[float], tick: int, last: Demand, P: Matrix | None) -> Demand:
+        """What is sent after `last` for a robot that will be `there` [m, m, rad] at its `tick`.
+
+        `P` (3, 3) is the covariance that is claimed for the present estimate.
+        """
+        config, sample_time = self.config, self.config.model.sample_time
+        asked = Demand(*config.law.drive(there, tick * sample_time, last.memory))
+        return config.limits.limited(asked, P, last, sample_time)
 
     def diverged(self, x: Vector) -> bool:
         """Whether a pose estimate is not finite, or FAR from where it began and from the goal."""
         pose = x.tolist()
-        return is_far(pose, self.config.law.goal) and is_far(pose, self._began)
+        return is_far(pose, self.config.goal) and is_far(pose, self._began)
 
     def warning(self, control: Control) -> str | None:
         """The estimator's."""
@@ -189,7 +230,7 @@ class Controller:
         x, P, flight = control.pose, control.P, control.flight
         if x is None or P is None:
             return None
-        pose = self._at_arrival(x, flight, control.drive)
+        pose = self._there(control.estimate, flight, control.drive, x)
         for u in flight.in_flight if self.kind.predicts else ():
             x, P = self.config.model.predict(x, P, u)
         return Belief(np.array(pose), P)
@@ -213,6 +254,12 @@ class Controller:
     def _applied(self, u: Vector, drive: Demand) -> Vector:
         """The input that the estimator is told."""
         return u
+
+    def _there(self, estimate: State, flight: Flight, drive: Demand, x: Vector) -> Way[float]:
+        """Where the robot will be when the command that is now made comes into force, as the
+        estimator says, or by (29)."""
+        ahead = self._estimator.ahead(estimate, flight.in_flight)
+        return self._at_arrival(x, flight, drive) if ahead is None else Way(*ahead.tolist())
 
     def _at_arrival(self, x: Vector, flight: Flight, drive: Demand) -> Way[float]:
         """(29): where the robot will be when the command that is now made comes into force."""

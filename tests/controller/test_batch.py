@@ -17,7 +17,7 @@ STARTS = np.array(((-3.0, -2.0), (-3.0, 1.0), (0.0, 1.5)))
 def test_the_batch_says_what_each_controller_says(estimator, wheels, exact):
     model = RobotModel(Q=np.diag(wheels))
     configs = [
-        StationConfig(estimator, model, initial_estimate=start, command_delay=N)
+        StationConfig(estimator, model=model, initial_estimate=start, command_delay=N)
         for start in STARTS.T
     ]
     z = STARTS + 0.1 * np.random.default_rng(1).standard_normal((TICKS, 3, 2))

@@ -17,13 +17,14 @@ from laglab_control.batch.estimators import (
 )
 from laglab_control.batch.flight import Flight, applied_of, place_of, sent, take_off
 from laglab_control.batch.guard import Found
-from laglab_control.batch.law import Demands, drive, slowed, stand_still
+from laglab_control.batch.law import Demands, drive, limited, polar_law, stand_still
 from laglab_control.batch.matrices import Symmetric
 from laglab_control.batch.robots import Robots, diverged, prior_of
 from laglab_control.batch.rows import Pose, Speeds, headings
 from laglab_control.controller import StationConfig
 from laglab_control.errors import ConfigError
 from laglab_control.estimators.family import estimator_kind
+from laglab_control.laws import PolarLaw
 from laglab_control.model import Matrix
 
 
@@ -55,7 +56,7 @@ class BatchController:
     none is refused. At tick 0 `answer(start(), ...)`; at every later tick
     `answer(advance(control), ...)`.
 
-    Raises ConfigError when there is no such estimator for many robots, or R is not diagonal.
+    Raises ConfigError when there is no such estimator or law for many robots, or R is not diagonal.
     """
 
     config: StationConfig
@@ -69,7 +70,7 @@ class BatchController:
         kind = self.config.estimator
         if kind not in BATCHED:
             raise ConfigError(f"there is no {kind} for many robots, but {', '.join(BATCHED)}")
-        _ = self._robots  # refuses what it cannot be
+        _ = self._robots, self._law  # refuses what it cannot be
 
     @property
     def robots(self) -> int:
@@ -79,6 +80,10 @@ class BatchController:
     @cached_property
     def _robots(self) -> Robots:
         return Robots(self.config.model)
+
+    @cached_property
+    def _law(self) -> PolarLaw:
+        return polar_law(self.config)
 
     @cached_property
     def _exact(self) -> bool:
@@ -126,21 +131,20 @@ class BatchController:
         pose, _, P = present
         if P is not None and found is not None:
             P = guard.claimed(P, found)
-        lost = lost | diverged(pose, self.config.law.goal, self.initial_estimates)
+        lost = lost | diverged(pose, self.config.goal, self.initial_estimates)
         demands = self._command(present._replace(P=P), flight, last, lost)
         return BatchControl(state, found, flight, demands, lost, pose, P)
 
     def _command(
         self, present: Present, flight: Flight, last: Demands, lost: NDArray[np.bool_]
     ) -> Demands:
-        (there, turn, P), law = present, self.config.law
+        (there, turn, P), config = present, self.config
         if self._predicts:
-            there, heading = place_of(self.config, flight, there, turn)
+            there, heading = place_of(config, flight, there, turn)
         else:
             heading = headings(there.theta)
-        speeds, at_goal = drive(law, there, last.at_goal, None if self._exact else heading)
-        if P is not None:
-            speeds = slowed(law, speeds, P)
+        speeds, at_goal = drive(self._law, there, last.at_goal, None if self._exact else heading)
+        speeds = limited(config.limits, speeds, P, last.speeds, config.model.sample_time)
         if lost.any():
             speeds = Speeds(*[np.where(lost, 0.0, each) for each in speeds])
         return Demands(speeds, at_goal)
