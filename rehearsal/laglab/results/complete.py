@@ -49,7 +49,7 @@ class Way(NamedTuple):
 
     side: Side = "both"
     transport: str = "inline"
-    plant: str = "fmu"
+    plant: str = "robot"
 
 
 def complete(

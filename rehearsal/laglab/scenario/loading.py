@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from laglab.errors import ScenarioError
-from laglab.scenario.model import Scenario
+from laglab.scenario.model import PATHS, Scenario
 from laglab.scenario.overrides import Overrides, put
 from laglab.scenario.toml import parsed
 
@@ -84,8 +84,9 @@ def _read(reference: str) -> tuple[dict[str, Any], Path]:
 
 
 def _anchored(fields: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """With the path in it, which is relative to the file's folder, as one that can be opened."""
-    match fields:
-        case {"link": {"replay": str(replay)}}:
-            fields["link"]["replay"] = str(folder / replay)
+    """With the paths in it, which are relative to the file's folder, as such as can be opened."""
+    for table, key in PATHS:
+        match fields.get(table):
+            case dict(keys) if isinstance(keys.get(key), str):
+                keys[key] = str(folder / keys[key])
     return fields

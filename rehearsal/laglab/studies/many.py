@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.runs.robot_side import link_fates, robot_parameters
+from laglab.runs.plant.shipped import robot_parameters
+from laglab.runs.robot_side import link_fates
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario
 from laglab.studies.schedule import schedule_of

@@ -12,6 +12,7 @@ from pathlib import Path
 from laglab.errors import StudyError
 from laglab.scenario import Scenario, changed
 from laglab.scenario.explain import spelled
+from laglab.scenario.model import PATHS
 from laglab.studies.sweep.cell import Cell
 from laglab.version import code_version
 from laglab_control import FAR
@@ -85,12 +86,13 @@ class Study:
 
     def _files(self) -> Iterator[tuple[str, str]]:
         """That the scenarios name, and a hash of each."""
-        replay = self.scenario.link.replay
-        named = [*([str(replay)] if replay else []), *map(str, self.grid.get("link.replay", ()))]
-        for name in named:
-            path = Path(name)
-            if path.is_file():
-                yield name, hashlib.sha256(path.read_bytes()).hexdigest()
+        fields = self.scenario.fields()
+        for table, key in PATHS:
+            of_base, of_grid = fields[table].get(key), self.grid.get(f"{table}.{key}", ())
+            for name in map(str, filter(None, (of_base, *of_grid))):
+                path = Path(name)
+                if path.is_file():
+                    yield name, hashlib.sha256(path.read_bytes()).hexdigest()
 
     def as_table(self) -> dict[str, object]:
         """As in a file, the scenario whole."""
