@@ -18,6 +18,7 @@ from laglab.commands import (
     figure,
     fmu,
     maps,
+    plant,
     protocol,
     replay,
     report,
@@ -84,6 +85,7 @@ app.command("controller")(sides.controller)
 app.command("serial")(serial.serial)
 app.add_typer(bench.app, name="bench")
 app.add_typer(fmu.app, name="fmu")
+app.add_typer(plant.app, name="plant")
 app.add_typer(protocol.app, name="protocol")
 app.command("conform")(protocol.conform)
 

@@ -5,6 +5,7 @@ import sys
 import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from xml.sax.saxutils import quoteattr
 
 from laglab_fmu import c_compiler
@@ -19,10 +20,18 @@ ROVER = (
     *(("gps.x", "output"), ("gps.y", "output"), ("compass", "output")),
     *(("fail_at", "parameter"), ("nan_at", "parameter"), ("discard_at", "parameter")),
     *(("wheel.radius", "parameter"), ("wheel.base", "parameter")),
+    *(("crash_at", "parameter"), ("dice", "parameter")),
     *(("der(posX)", "local"), ("der(posY)", "local"), ("der(psi)", "local")),
 )
 """The rover's variables, in the order of their value references."""
-STARTS = {"wheel.radius": 0.05, "wheel.base": 0.6, "fail_at": 1e9, "nan_at": 1e9, "discard_at": 1e9}
+STARTS = {
+    "crash_at": 1e9,
+    "wheel.radius": 0.05,
+    "wheel.base": 0.6,
+    "fail_at": 1e9,
+    "nan_at": 1e9,
+    "discard_at": 1e9,
+}
 CO_SIMULATION = (
     '<CoSimulation modelIdentifier="rover" canHandleVariableCommunicationStepSize="true"/>'
 )
@@ -50,14 +59,18 @@ def rover(
     library: Path,
     interfaces: Sequence[str] = (CO_SIMULATION,),
     platform: str = host_platform().fmi2_folder,
-    resources: Mapping[str, str] = {"gain.txt": "1.0"},
+    resources: Sequence[str] = ("gain.txt",),
+    names: Mapping[str, str] = MappingProxyType({}),
 ) -> Path:
-    """The rover as an FMU."""
+    """The rover as an FMU; `names` are others than its own."""
+    description = rover_description(interfaces)
+    for name, other in names.items():
+        description = description.replace(quoteattr(name), quoteattr(other))
     with zipfile.ZipFile(path, "w") as archive:
-        archive.writestr("modelDescription.xml", rover_description(interfaces))
+        archive.writestr("modelDescription.xml", description)
         archive.write(library, f"binaries/{platform}/rover{library.suffix}")
-        for name, text in resources.items():
-            archive.writestr(f"resources/{name}", text)
+        for name in resources:
+            archive.writestr(f"resources/{name}", "1.0")
     return path
 
 

@@ -148,7 +148,7 @@ def test_a_value_that_is_refused_is_named(fmus: Path) -> None:
 
 
 def test_resources_that_are_missing_are_told_by_the_fmu(tmp_path: Path, library: Path) -> None:
-    file = FmuFile.read(rover(tmp_path / "rover.fmu", library, [CO_SIMULATION], resources={}))
+    file = FmuFile.read(rover(tmp_path / "rover.fmu", library, [CO_SIMULATION], resources=()))
     with pytest.raises(FmuFileError, match=r"does not start: .*; no gain.txt in my resources"):
         ForeignRobot(file, ROVER, TS)
 

@@ -9,7 +9,7 @@
 #include "fmi2Functions.h"
 
 enum { CMD_LEFT, CMD_RIGHT, POS_X, POS_Y, PSI, X0, Y0, PSI0, GPS_X, GPS_Y, COMPASS, FAIL_AT, NAN_AT, DISCARD_AT, RADIUS,
-       BASE, DER_X, DER_Y, DER_PSI, VARIABLES };
+       BASE, CRASH_AT, DICE, DER_X, DER_Y, DER_PSI, VARIABLES };
 
 static const double PART = 0.005; /* s: its own step */
 
@@ -21,7 +21,7 @@ typedef struct {
 
 static void begin(Rover *rover) {
     memset(rover->value, 0, sizeof rover->value);
-    rover->value[FAIL_AT] = rover->value[NAN_AT] = rover->value[DISCARD_AT] = 1e9;
+    rover->value[FAIL_AT] = rover->value[NAN_AT] = rover->value[DISCARD_AT] = rover->value[CRASH_AT] = 1e9;
     rover->value[RADIUS] = 0.05;
     rover->value[BASE] = 0.6;
     rover->time = 0.0;
@@ -88,6 +88,13 @@ fmi2Status fmi2Reset(fmi2Component c) {
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
     Rover *rover = c;
     memcpy(&rover->value[POS_X], &rover->value[X0], 3 * sizeof(double));
+    if (rover->value[DICE] != 0.0) {
+        FILE *dice = fopen("/dev/urandom", "rb");
+        if (dice == NULL || fread(&rover->noise, sizeof rover->noise, 1, dice) != 1) {
+            return fmi2Error;
+        }
+        fclose(dice);
+    }
     derive(rover);
     measure(rover);
     return fmi2OK;
@@ -121,6 +128,9 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
     Rover *rover = c;
     (void)keep;
     const double end = time + step;
+    if (end > rover->value[CRASH_AT]) {
+        abort();
+    }
     if (end > rover->value[DISCARD_AT]) {
         return fmi2Discard;
     }
