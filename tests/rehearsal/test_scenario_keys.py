@@ -14,8 +14,8 @@ from laglab.runs.robot_side import gateway_config, link_fates, shown_parameters
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario, changed, load
 from laglab.scenario.keys import ANY, rows
-from laglab.scenario.model import PATHS
-from laglab_control import ESTIMATORS
+from laglab.scenario.model import FILES
+from laglab_control import ESTIMATORS, LAWS
 from laglab_gateway.link.log import LINK_HEADER
 
 Keys = dict[str, st.SearchStrategy[Any]]
@@ -99,7 +99,7 @@ PLANT: Keys = {
 BROUGHT: Keys = {
     "kind": st.sampled_from(["own:Robot", "installed"]),
     "options": st.dictionaries(
-        THEIRS, HERE | st.dictionaries(THEIRS, TEXT, max_size=2), max_size=3
+        THEIRS, HERE | st.dictionaries(THEIRS, TEXT, min_size=1, max_size=2), max_size=3
     ),
 }
 ANY_PLANT = (
@@ -115,8 +115,19 @@ ESTIMATOR: Keys = {
     "guard": st.booleans(),
 }
 LAW: Keys = dict.fromkeys(
-    ("gamma", "lambda", "h", "v_max", "omega_max", "goal_tolerance", "caution"), POSITIVE
+    (
+        *("gamma", "lambda", "h", "goal_tolerance"),
+        *("v_max", "omega_max", "caution", "accel_max", "alpha_max"),
+    ),
+    POSITIVE,
 )
+WITH_A_PATH: Keys = {
+    "kind": st.sampled_from(["tracking", "somebodys:Law"]),
+    "path": st.sampled_from(["circle(1, 0.5)", "eight( 3,2 )", "way.csv", "earlier run/way.csv"]),
+    "options": st.dictionaries(
+        st.sampled_from(["k_x", "k_y"]), st.floats(0.1, 9) | st.lists(st.floats(0, 1)), max_size=2
+    ),
+}
 SAFETY: Keys = {
     **dict.fromkeys(("v_limit", "omega_limit"), POSITIVE),
     **dict.fromkeys(("link_timeout", "ramp"), NOT_NEGATIVE),
@@ -140,7 +151,7 @@ TOP: Keys = {
     "silence_timeout": POSITIVE,
     "plant": ANY_PLANT,
     "estimator": table(ESTIMATOR),
-    "law": table(LAW),
+    "law": table(LAW) | st.fixed_dictionaries(WITH_A_PATH, optional=LAW),
     "link": table(LINK),
     "safety": table(SAFETY),
     "origin": table(ORIGIN),
@@ -154,17 +165,21 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for log in (folder / "link.csv", folder / "earlier run" / "link.csv"):
         log.parent.mkdir(exist_ok=True)
         log.write_text(LINK_HEADER)
+    for way in (folder / "way.csv", folder / "earlier run" / "way.csv"):
+        way.write_text("time,x,y,theta,v,omega\n0,0,0,0,0,0\n")
     return folder
 
 
 def at(folder: Path, fields: dict[str, Any]) -> Scenario:
     """The scenario whose file stands in that folder."""
-    paths = {
+    files = {
         f"{table}.{key}": str(folder / path)
-        for table, key in PATHS
+        for table, key in FILES
         if (path := fields.get(table, {}).get(key))
     }
-    return changed(Scenario(), fields | paths)
+    path = fields.get("law", {}).get("path", "")
+    files |= {"law.path": str(folder / path)} if path.endswith("csv") else {}
+    return changed(Scenario(), {**fields, **files})
 
 
 def test_the_strategies_know_every_key() -> None:
@@ -175,7 +190,7 @@ def test_the_strategies_know_every_key() -> None:
         *(f"plant.outputs.{key}" for key in OUTPUTS),
         *(f"plant.start.{key}" for key in START),
         *(f"estimator.{key}" for key in ESTIMATOR),
-        *(f"law.{key}" for key in LAW),
+        *(f"law.{key}" for key in {**LAW, **WITH_A_PATH}),
         *(f"link.{key}" for key in LINK),
         *(f"safety.{key}" for key in SAFETY),
         *(f"origin.{key}" for key in ORIGIN),
@@ -201,8 +216,9 @@ def test_what_is_written_reads_back_to_the_same(folder: Path, fields: dict[str, 
 @settings(max_examples=50, deadline=None)
 @given(table(TOP))
 def test_what_a_scenario_allows_both_sides_take(folder: Path, fields: dict[str, Any]) -> None:
-    scenario = at(folder, fields)
-    station_config(scenario)
+    scenario = at(folder, fields | {"law": {**fields.get("law", {}), "options": {}}})
+    if scenario.law.kind in LAWS:
+        station_config(scenario)
     gateway_config(scenario)
     link_fates(scenario)
     shown_parameters(scenario)

@@ -75,7 +75,7 @@ def told_in_toml(scenario: Scenario, trial: Trial) -> str:
         "inputs": plant.wired_inputs,
         "outputs": plant.wired_outputs,
         "start": plant.wired_start,
-        "parameters": plant.parameters or {},
+        "parameters": plant.parameters,
     }
     for key, values in tables.items():
         if values:

@@ -21,7 +21,8 @@ from laglab.results.shadows import (
     shadow_file,
     shadow_rows,
 )
-from laglab.results.summary import Errors, Final, Side, Summary, write_summary
+from laglab.results.summary import Errors, Final, Following, Side, Summary, write_summary
+from laglab.results.target import followed, target
 from laglab.runs.ending import Ending
 from laglab.scenario import Scenario
 from laglab.version import laglab_version
@@ -42,6 +43,8 @@ from laglab_gateway import (
 )
 from laglab_protocol import EndReason, Frame, decode
 from laglab_station import StationReport, heard, read_session
+
+CONVERGED = "converged", "did not converge"
 
 
 class Way(NamedTuple):
@@ -66,7 +69,8 @@ def complete(
     except TraceError as error:
         raise nothing_recorded(ending, str(error)) from None
     compared = {name: _shadowed(scenario, name, directory) for name in scenario.estimator.compare}
-    summary = summarise(scenario, way, ending, numbers, compared)
+    following = followed(trace_pieces(directory / TRACE_FILE), target(scenario), numbers.rows)
+    summary = summarise(scenario, way, ending, numbers, compared, following)
     write_summary(summary, directory)
     run = Run(scenario, summary, directory)
     if figure:
@@ -87,9 +91,9 @@ def keep(scenario: Scenario, way: Way, ending: Ending, recorder: MemoryRecorder)
         rows = list(shadow_rows(scenario, name, session))
         shadows[name] = collected(rows)
         compared[name] = shadow_error(rows, [trace], scenario.link.measurement_delay)
-    summary = summarise(
-        scenario, way, ending, digest([trace], scenario.link.measurement_delay), compared
-    )
+    numbers = digest([trace], scenario.link.measurement_delay)
+    following = followed([trace], target(scenario), numbers.rows)
+    summary = summarise(scenario, way, ending, numbers, compared, following)
     return Run(scenario, summary, None, Kept(trace, _tables(recorder), shadows))
 
 
@@ -132,13 +136,15 @@ def summarise(
     ending: Ending,
     numbers: Digest,
     compared: dict[str, Errors | None],
+    following: Following | None = None,
 ) -> Summary:
     """The run in numbers."""
     end, outcome = numbers.end, ending.outcome
     ticks = round(float(end["time"][-1]) / scenario.sample_time)
     completed = outcome is not None and outcome.reason is EndReason.COMPLETED
-    converged = completed and has_converged(end, scenario.goal)
-    final = _final(end, scenario)
+    wanted = target(scenario).poses(end["tick"])
+    converged = completed and has_converged(end, wanted)
+    final = _final(end, wanted)
     seconds = ending.loop_seconds
     in_loop = {scenario.estimator.kind: numbers.rms_error} if compared else {}
     return Summary(
@@ -148,6 +154,7 @@ def summarise(
         transport=way.transport,
         plant=way.plant,
         estimator=scenario.estimator.kind,
+        law=scenario.law.kind,
         n=scenario.link.command_delay,
         m=scenario.link.measurement_delay,
         seed=scenario.seed,
@@ -158,13 +165,14 @@ def summarise(
         compare=in_loop | compared,
         outcome=outcome.reason.name.lower() if outcome else None,
         converged=converged,
+        following=following,
         wall_time_s=seconds,
         real_time_factor=ticks * scenario.sample_time / seconds if seconds else None,
         link=ending.link,
         timing=ending.timing,
         station=ending.station,
         warnings=ending.warnings,
-        verdict=_verdict(ending, final, converged, ticks, numbers.seen == "measured"),
+        verdict=_verdict(ending, final, converged, ticks, numbers.seen == "measured", following),
     )
 
 
@@ -175,12 +183,10 @@ def _after_alarms(station: StationReport | None) -> str:
     return f" after {times}, the first at tick {station.alarms[0].tick}"
 
 
-def _final(end: Trace, scenario: Scenario) -> Final:
+def _final(end: Trace, wanted: NDArray[np.float64]) -> Final:
     """At the last tick; of what is told later or not at all, the last that is known."""
-    pose = robot_pose(end)
-    known = pose[~np.isnan(pose).any(axis=1)][-1:]
-    rho, theta_error = goal_errors(known, scenario.goal) if len(known) else ([np.nan], [np.nan])
-    numbers = rho[0], theta_error[0], _last(end["v"]), _last(end["omega"])
+    rho, theta_error = goal_errors(robot_pose(end), wanted)
+    numbers = _last(rho), _last(theta_error), _last(end["v"]), _last(end["omega"])
     return Final(*(float(number) if abs(number) < float("inf") else None for number in numbers))
 
 
@@ -189,7 +195,14 @@ def _last(column: NDArray[np.float64]) -> float:
     return float(there[-1]) if len(there) else np.nan
 
 
-def _verdict(ending: Ending, final: Final, converged: bool, ticks: int, measured: bool) -> str:
+def _verdict(
+    ending: Ending,
+    final: Final,
+    converged: bool,
+    ticks: int,
+    measured: bool,
+    following: Following | None,
+) -> str:
     if ending.outcome is None:
         return f"cut short at tick {ticks}: {ending.problem}"
     tick = ending.outcome.tick
@@ -203,10 +216,14 @@ def _verdict(ending: Ending, final: Final, converged: bool, ticks: int, measured
         case EndReason.DISPLACED:
             return f"stopped at tick {tick}: another station has taken over"
     stopped = "after an emergency stop: " if ending.emergency_stop else ""
-    word = (
-        stopped + ("converged" if converged else "did not converge") + _after_alarms(ending.station)
-    )
+    reached = ("follows its path", "does not follow its path") if following else CONVERGED
+    word = stopped + reached[not converged] + _after_alarms(ending.station)
     seen = " as measured" if measured else ""
+    if following:
+        return (
+            f"{word}: {following.rms:.3g} m from it (RMS), {following.largest:.3g} m at most, over "
+            f"the second half{seen}"
+        )
     if final.rho is None or final.theta_error is None:
         return f"{word}: where the robot is at the end is not known"
     return f"{word}: at the end ρ = {final.rho:.3g} m, θ error = {final.theta_error:.3g} rad{seen}"

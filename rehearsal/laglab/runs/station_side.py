@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from laglab.scenario import Scenario
-from laglab_control import Controller, Law, RobotModel, StationConfig
+from laglab_control import Controller, Law, PolarLaw, RobotModel, SpeedLimits, StationConfig
+from laglab_control.laws import brought_law, tracking_law
 from laglab_protocol import STATION_COMPONENT, STATION_SYSTEM, Codec, Receiver, Sender, Settings
 from laglab_station import Station
 
@@ -27,12 +28,25 @@ def robot_model(scenario: Scenario) -> RobotModel:
     )
 
 
+def control_law(scenario: Scenario) -> Law:
+    """Raises PluginError or ConfigError when it cannot be made."""
+    told, path = scenario.law, scenario.path
+    if told.kind == "polar":
+        return PolarLaw(goal=scenario.goal, **told.of(PolarLaw))
+    if told.kind == "tracking":
+        assert path is not None, "the table has seen to it"
+        return tracking_law(path, told.options)
+    return brought_law(told.kind, scenario.goal, told.options | ({"path": path} if path else {}))
+
+
 def station_config(scenario: Scenario) -> StationConfig:
     """The remote station's side."""
     return StationConfig(
         estimator=scenario.estimator.kind,
         model=robot_model(scenario),
-        law=Law(goal=scenario.goal, **dict(scenario.law)),
+        law=control_law(scenario),
+        limits=SpeedLimits(**scenario.law.of(SpeedLimits)),
+        goal=scenario.goal,
         initial_estimate=scenario.first_estimate(),
         initial_covariance=scenario.estimator.initial_covariance * np.eye(3),
         command_delay=scenario.link.command_delay,

@@ -8,7 +8,8 @@ from typing import Any
 from pydantic import ValidationError
 
 from laglab.errors import ScenarioError
-from laglab.scenario.model import PATHS, Scenario
+from laglab.scenario import paths
+from laglab.scenario.model import FILES, Scenario
 from laglab.scenario.overrides import Overrides, put
 from laglab.scenario.toml import parsed
 
@@ -84,9 +85,12 @@ def _read(reference: str) -> tuple[dict[str, Any], Path]:
 
 
 def _anchored(fields: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """With the paths in it, which are relative to the file's folder, as such as can be opened."""
-    for table, key in PATHS:
+    """With the files that it names, relative to its folder, as ones that can be opened."""
+    for table, key in FILES:
         match fields.get(table):
             case dict(keys) if isinstance(keys.get(key), str):
                 keys[key] = str(folder / keys[key])
+    match fields:
+        case {"law": {"path": str(path)}}:
+            fields["law"]["path"] = paths.anchored(path, folder)
     return fields

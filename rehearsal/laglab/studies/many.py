@@ -69,6 +69,7 @@ def why_one_by_one(scenario: Scenario) -> str | None:
         f"there is no {scenario.estimator.kind} for many robots": (
             scenario.estimator.kind not in BATCHED
         ),
+        f"there is no law {scenario.law.kind} for many robots": scenario.law.kind != "polar",
         "somebody moves the robot (plant.event)": bool(scenario.plant.event),
         "the run does not end by itself (duration)": scenario.last_tick is None,
         "the clock paces it (pace)": scenario.pace != "lockstep",

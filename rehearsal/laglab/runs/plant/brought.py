@@ -29,7 +29,7 @@ class BroughtPlant:
     @classmethod
     def made(cls, scenario: Scenario) -> "BroughtPlant":
         """Of the scenario's kind. Raises: PluginError, PlantError."""
-        kind, options = scenario.plant.kind, scenario.plant.options or {}
+        kind, options = scenario.plant.kind, scenario.plant.options
         maker = maker_of(kind)
         try:
             plant = maker(scenario.sample_time, scenario.start, scenario.seed, **options)

@@ -66,9 +66,7 @@ def is_placeable(scenario: Scenario) -> bool:
 def wiring(scenario: Scenario) -> Wiring:
     """By the scenario's map."""
     plant = scenario.plant
-    return Wiring(
-        plant.wired_inputs, plant.wired_outputs, plant.wired_start, plant.parameters or {}
-    )
+    return Wiring(plant.wired_inputs, plant.wired_outputs, plant.wired_start, plant.parameters)
 
 
 @contextmanager

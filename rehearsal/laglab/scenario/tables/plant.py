@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
-from laglab.scenario.tables.table import POSE, Pose, Table, as_in
+from laglab.scenario.tables.table import POSE, Options, OptionsTable, Pose, Table, as_in
 from laglab_control import RobotModel
 from laglab_gateway.values import (
     NotNegative,
@@ -43,6 +43,7 @@ ParameterValues = Annotated[
     dict[str, ParameterValue],
     saying("a table of names and numbers, true or false, texts or lists of numbers"),
     BeforeValidator(_flat),
+    AfterValidator(OptionsTable),
 ]
 
 
@@ -137,13 +138,13 @@ class PlantTable(Table):
         PlantStart | None, described("-", "Which variables of `fmu` take the start pose.")
     ] = None
     parameters: Annotated[
-        ParameterValues | None,
+        ParameterValues,
         described("-", "Start values of the FMU's variables, by its own names."),
-    ] = None
+    ] = Field(default_factory=OptionsTable)  # type: ignore[arg-type]
     options: Annotated[
-        dict[str, object] | None,
+        Options,
         described("-", "What a robot that somebody brings as a class is told besides."),
-    ] = None
+    ] = Field(default_factory=OptionsTable)
     fmi: Annotated[Literal[2, 3], described("1", "The FMI version of its FMU, 2 or 3.")] = 3
     integration: Annotated[
         Literal["euler", "exact"],
@@ -195,9 +196,9 @@ class PlantTable(Table):
                 "with fmu give inputs and outputs, too: `laglab plant check FILE` proposes them"
             )
         for name in ("inputs", "outputs", "start", "parameters"):
-            if self.fmu is None and getattr(self, name) is not None:
+            if self.fmu is None and getattr(self, name):
                 raise ValueError(f"{name}: there is no fmu that it could be of")
-        if ours and self.options is not None:
+        if ours and self.options:
             raise ValueError("options: only a robot that somebody brings as a class has some")
         return self
 

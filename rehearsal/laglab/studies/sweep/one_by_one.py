@@ -10,6 +10,7 @@ from laglab.errors import RunError
 from laglab.interface import run
 from laglab.results.numbers import loop_estimates, robot_pose
 from laglab.results.run import Run
+from laglab.results.target import target
 from laglab.scenario import Scenario
 from laglab.studies.sweep.cell import Cell
 from laglab.studies.sweep.judged import Array, Judgements, Record, joined, judgements
@@ -53,7 +54,7 @@ def judged_alone(scenario: Scenario) -> Judgements:
     claims: list[Array] = []
     record = _record(run(scenario, controller=partial(Claiming, claims=claims)), claims)
     m = scenario.link.measurement_delay
-    return judgements(record, scenario.goal, scenario.sample_time, m)
+    return judgements(record, target(scenario), m)
 
 
 def _record(done: Run, claims: Sequence[Array]) -> Record:

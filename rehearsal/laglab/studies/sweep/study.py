@@ -12,7 +12,7 @@ from pathlib import Path
 from laglab.errors import StudyError
 from laglab.scenario import Scenario, changed
 from laglab.scenario.explain import spelled
-from laglab.scenario.model import PATHS
+from laglab.scenario.model import FILES
 from laglab.studies.sweep.cell import Cell
 from laglab.version import code_version
 from laglab_control import FAR
@@ -87,7 +87,7 @@ class Study:
     def _files(self) -> Iterator[tuple[str, str]]:
         """That the scenarios name, and a hash of each."""
         fields = self.scenario.fields()
-        for table, key in PATHS:
+        for table, key in (*FILES, ("law", "path")):
             of_base, of_grid = fields[table].get(key), self.grid.get(f"{table}.{key}", ())
             for name in map(str, filter(None, (of_base, *of_grid))):
                 path = Path(name)
