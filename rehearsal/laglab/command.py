@@ -19,6 +19,7 @@ from laglab.commands import (
     fmu,
     maps,
     plant,
+    plants,
     protocol,
     replay,
     report,
@@ -67,6 +68,7 @@ app.command("run")(run.run)
 app.command("replay")(replay.replay)
 app.command("scenarios")(scenarios.scenarios)
 app.command("estimators")(estimators.estimators)
+app.command("plants")(plants.plants)
 app.command("scenario")(scenario.scenario)
 app.command("figure")(figure.figure)
 app.command("report")(report.report)

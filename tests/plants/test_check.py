@@ -68,6 +68,16 @@ def test_what_is_proposed_runs(check: Check, fmus: Path, tmp_path: Path, name: s
     assert run(tmp_path / "own.toml", {"duration": 0.2}).summary.ticks == 20
 
 
+def test_the_page_s_example_is_what_is_printed(check: Check, fmus: Path) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "plants.md").read_text("utf-8")
+    shown, own = re.findall(r"^```(?:toml)?\n(.*?)^```", page, flags=re.M | re.S)[:2]
+    _, out, _ = check(fmus / "Tray.fmu")
+    assert tomllib.loads(printed_toml(out)) == tomllib.loads(own)
+    told = [" ".join(line.split()) for line in out.splitlines() if "speed " not in line]
+    for line in shown.splitlines():
+        assert "speed " in line or " ".join(line.split()) in told
+
+
 def test_versions_interfaces_and_platforms_are_told(check: Check, fmus: Path) -> None:
     assert (
         "rover.fmu: FMI 2.0, co-simulation and model exchange; for linux64"

@@ -65,7 +65,7 @@ LINK: Keys = {
     "replay": st.sampled_from(["link.csv", "./link.csv", "earlier run/link.csv"]),
 }
 PLANT_EVENT: Keys = {"at": st.floats(0, 1e6), "place": POSE}
-THEIRS = st.text(st.characters(exclude_categories=["Cs"]), min_size=1, max_size=20)
+THEIRS = st.from_regex(r"[A-Za-z_(][\w.\[\]() -]{0,12}", fullmatch=True)
 INPUTS = ("v", "omega", "omega_left", "omega_right")
 OUTPUTS = ("x", "y", "theta", "x_meas", "y_meas", "theta_meas")
 START: Keys = dict.fromkeys(("x", "y", "theta"), THEIRS)

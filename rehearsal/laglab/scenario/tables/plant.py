@@ -218,6 +218,11 @@ class PlantTable(Table):
         return named(self.start)
 
     @property
+    def has_fleet(self) -> bool:
+        """Whether many of it can be stepped at once."""
+        return self.fmu is None and self.kind == "robot"
+
+    @property
     def called(self) -> str:
         """In a word."""
         return self.fmu.name if self.fmu is not None else self.kind
