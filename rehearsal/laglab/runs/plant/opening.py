@@ -34,7 +34,7 @@ def open_plant(scenario: Scenario) -> Iterator[OpenPlant]:
 
 @contextmanager
 def _opened(scenario: Scenario) -> Iterator[OpenPlant]:
-    if scenario.plant.fmu is not None:
+    if scenario.plant.is_mapped:
         from laglab.runs.plant.foreign import open_foreign  # loads FMPy
 
         with open_foreign(scenario) as opened:
@@ -51,7 +51,7 @@ def _opened(scenario: Scenario) -> Iterator[OpenPlant]:
 
 def check_plant(scenario: Scenario) -> None:
     """All that can be known to be wrong before it runs. Raises: FmuError, PluginError."""
-    if scenario.plant.fmu is not None:
+    if scenario.plant.is_mapped:
         from laglab.runs.plant.foreign import check_foreign  # loads FMPy
 
         check_foreign(scenario)

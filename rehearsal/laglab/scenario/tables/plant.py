@@ -20,7 +20,11 @@ from laglab_gateway.values import (
 )
 
 Share = Annotated[Number, Field(gt=-1, lt=1)]
-SHIPPED = {"robot": "differential drive: two wheels and a castor, the paper's robot"}
+SHIPPED = {
+    "robot": "differential drive, told its wheels' speeds: the paper's robot",
+    "car": "car-like: drives with its rear wheels, steers with its front ones, which lag",
+    "omni": "omnidirectional on three wheels, driven ahead and turned",
+}
 """The robots that come with the package, and what each is."""
 POSE_NAMES = ("x", "y", "theta")
 Name = Annotated[str, Field(strict=True, min_length=1)]
@@ -139,7 +143,9 @@ class PlantTable(Table):
     ] = None
     parameters: Annotated[
         ParameterValues,
-        described("-", "Start values of the FMU's variables, by its own names."),
+        described(
+            "-", "Start values of the FMU's variables, by its own names; of `car` and `omni`, too."
+        ),
     ] = Field(default_factory=OptionsTable)  # type: ignore[arg-type]
     options: Annotated[
         Options,
@@ -195,9 +201,11 @@ class PlantTable(Table):
             raise ValueError(
                 "with fmu give inputs and outputs, too: `laglab plant check FILE` proposes them"
             )
-        for name in ("inputs", "outputs", "start", "parameters"):
+        for name in ("inputs", "outputs", "start"):
             if self.fmu is None and getattr(self, name):
                 raise ValueError(f"{name}: there is no fmu that it could be of")
+        if self.parameters and not self.is_mapped:
+            raise ValueError(f"parameters: {self.kind} has none that are set by name")
         if ours and self.options:
             raise ValueError("options: only a robot that somebody brings as a class has some")
         return self
@@ -216,6 +224,11 @@ class PlantTable(Table):
     def wired_start(self) -> dict[str, str]:
         """Ours → the FMU's, those of x, y, theta that can be said."""
         return named(self.start)
+
+    @property
+    def is_mapped(self) -> bool:
+        """Whether it is an FMU whose variables go by a map of names: anyone's, or ours but one."""
+        return self.fmu is not None or self.kind in set(SHIPPED) - {"robot"}
 
     @property
     def has_fleet(self) -> bool:
