@@ -14,6 +14,7 @@ from laglab_fmu.errors import (
     CallError,
     CompilerNotFoundError,
     FmuError,
+    FmuFileError,
     FmuNotBuiltError,
 )
 from laglab_fmu.parameters import Reading, RobotParameters
@@ -31,6 +32,7 @@ __all__ = [
     "CompilerNotFoundError",
     "Fleet",
     "FmuError",
+    "FmuFileError",
     "FmuNotBuiltError",
     "Reading",
     "Robot",

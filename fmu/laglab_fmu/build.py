@@ -14,16 +14,15 @@ from laglab_fmu.compiler import (
     zig_compiler,
 )
 from laglab_fmu.contents import c_files, fmi_headers, fmu_contents
-from laglab_fmu.description import FMUS
 from laglab_fmu.mach_o import signed, universal
-from laglab_fmu.variables import MODEL_NAME
+from laglab_fmu.models import MODELS, Model
 
 ZIP_DATE = (1980, 1, 1, 0, 0, 0)
 """The oldest date that a zip can hold: the same for every file of every build."""
 
 
 def build_fmus(directory: Path, platforms: Sequence[Platform] = ()) -> list[Path]:
-    """Builds Robot2.fmu, Robot3.fmu and Fleet3.fmu into a directory.
+    """Builds the FMUs of every robot that ships, for FMI 2 and 3, and Fleet3.fmu, into a directory.
 
     Args:
         directory: where the FMUs go; made if missing.
@@ -41,28 +40,36 @@ def build_fmus(directory: Path, platforms: Sequence[Platform] = ()) -> list[Path
         compilers = {platform: zig_compiler(platform) for platform in platforms}
     else:
         compilers = {host_platform(): c_compiler()}
-    with tempfile.TemporaryDirectory(prefix="laglab-build-") as folder:
-        binaries = _compile(Path(folder), compilers)
+    built: dict[str, dict[Platform, bytes]] = {}
+    for model in MODELS:
+        with tempfile.TemporaryDirectory(prefix="laglab-build-") as folder:
+            binaries = _compile(model, Path(folder), compilers)
+        built |= dict.fromkeys(model.fmus, binaries)
     directory.mkdir(parents=True, exist_ok=True)
-    return [_write_zip(directory / f"{name}.fmu", fmu_contents(name, binaries)) for name in FMUS]
+    return [
+        _write_zip(directory / f"{name}.fmu", fmu_contents(name, binaries))
+        for name, binaries in built.items()
+    ]
 
 
-def _compile(folder: Path, compilers: Mapping[Platform, Sequence[str]]) -> dict[Platform, bytes]:
+def _compile(
+    model: Model, folder: Path, compilers: Mapping[Platform, Sequence[str]]
+) -> dict[Platform, bytes]:
     """One library with both versions for each platform; for macOS, one for all processors."""
-    for name, text in c_files().items():
+    for name, text in c_files(model).items():
         (folder / name).write_bytes(text)
     sources = sorted(path.name for path in folder.glob("*.c"))
     binaries = {}
     for platform, compiler in compilers.items():
-        library = f"{MODEL_NAME}{platform.suffix}"
+        library = f"{model.name}{platform.suffix}"
         compile_library(folder, sources, library, compiler, fmi_headers())
         binaries[platform] = (folder / library).read_bytes()
-    return binaries | _for_macos(binaries)
+    return binaries | _for_macos(model, binaries)
 
 
-def _for_macos(binaries: Mapping[Platform, bytes]) -> dict[Platform, bytes]:
+def _for_macos(model: Model, binaries: Mapping[Platform, bytes]) -> dict[Platform, bytes]:
     """The same signed library for every processor that macOS runs on."""
-    parts = {p: signed(code, MODEL_NAME) for p, code in binaries.items() if p.system == "darwin"}
+    parts = {p: signed(code, model.name) for p, code in binaries.items() if p.system == "darwin"}
     if len(parts) < 2:
         return parts
     return dict.fromkeys(parts, universal(list(parts.values())))

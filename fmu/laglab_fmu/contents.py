@@ -11,11 +11,12 @@ from xml.etree.ElementTree import Element, SubElement
 import fmpy
 
 from laglab_fmu.compiler import Platform
-from laglab_fmu.description import FMUS, model_description_2, model_description_3, token, xml_text
+from laglab_fmu.description import model_description_2, model_description_3, token, xml_text
 from laglab_fmu.errors import BuildError
 from laglab_fmu.header import variables_header
+from laglab_fmu.models import FLEET_NAME, ROBOT, Model, model_of
 from laglab_fmu.units import TYPES
-from laglab_fmu.variables import MODEL_NAME, VARIABLES, Role, Variable
+from laglab_fmu.variables import MODEL_NAME, Role, Variable
 
 HEADERS = {
     2: ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"),
@@ -44,10 +45,14 @@ def own_files(folder: str) -> Path:
     raise BuildError(f"there is no {folder} in {package} or beside it; install laglab again")
 
 
-def c_files() -> dict[str, bytes]:
+def c_files(model: Model = ROBOT) -> dict[str, bytes]:
     """The C sources of both versions by name, the generated header included."""
-    files = {path.name: path.read_bytes() for path in sorted(own_files("src").glob("*.[ch]"))}
-    return files | {"variables.h": variables_header({name: token(name) for name in FMUS}).encode()}
+    folder = own_files("src")
+    paths = [*folder.glob("*.[ch]"), *(folder / "robots" / model.folder).glob("*.[ch]")]
+    files = {path.name: path.read_bytes() for path in sorted(paths)}
+    tokens = dict(zip(("TOKEN_2", "TOKEN_3", "TOKEN_FLEET"), map(token, model.fmus), strict=False))
+    tokens.setdefault("TOKEN_FLEET", f"{{no fleet of {model.name}}}")
+    return files | {"variables.h": variables_header(model.variables, tokens).encode()}
 
 
 def fmi_headers() -> Path:
@@ -56,27 +61,28 @@ def fmi_headers() -> Path:
 
 
 def fmu_contents(name: str, binaries: Mapping[Platform, bytes]) -> dict[str, bytes]:
-    """All files of Robot2, Robot3 or Fleet3 by their path in the archive."""
+    """All files of an FMU, such as Robot2, by their path in the archive."""
     identifier, version = name[:-1], int(name[-1])
-    fleet = identifier != MODEL_NAME
-    sources = _sources(version)
+    model, fleet = model_of(name), identifier == FLEET_NAME
+    sources = _sources(model, version)
     names = sorted(source for source in sources if source.endswith(".c"))
     files = {f"sources/{source}": text for source, text in sources.items()}
     if version == 2:
-        files["modelDescription.xml"] = model_description_2(names)
+        files["modelDescription.xml"] = model_description_2(model, names)
     else:
-        files["modelDescription.xml"] = model_description_3(fleet)
+        files["modelDescription.xml"] = model_description_3(model, fleet)
         files["sources/buildDescription.xml"] = _build_description(identifier, names)
     for platform, library in binaries.items():
         folder = platform.fmi2_folder if version == 2 else platform.fmi3_folder
         files[f"binaries/{folder}/{identifier}{platform.suffix}"] = library
-    return files | _documentation() | _icons(version) | _reference_results(identifier)
+    files |= _documentation(model) | _icons(model, version)
+    return files | _reference_results(identifier) if model is ROBOT else files
 
 
-def _sources(version: int) -> dict[str, bytes]:
+def _sources(model: Model, version: int) -> dict[str, bytes]:
     """The sources of one version, with the headers that they include."""
     other = f"fmi{5 - version}"
-    ours = {name: text for name, text in c_files().items() if not name.startswith(other)}
+    ours = {name: text for name, text in c_files(model).items() if not name.startswith(other)}
     return ours | {name: (fmi_headers() / name).read_bytes() for name in HEADERS[version]}
 
 
@@ -92,9 +98,11 @@ def _build_description(identifier: str, sources: list[str]) -> bytes:
     return xml_text(root)
 
 
-def _documentation() -> dict[str, bytes]:
+def _documentation(model: Model) -> dict[str, bytes]:
     page = Template((own_files("content") / "index.html").read_text(encoding="utf-8"))
-    rows = "\n".join(_row(variable) for variable in VARIABLES if variable.role is not Role.TIME)
+    rows = "\n".join(
+        _row(variable) for variable in model.variables if variable.role is not Role.TIME
+    )
     return {
         "documentation/index.html": page.substitute(rows=rows).encode(),
         "documentation/licenses/license.txt": (own_files("content") / "license.txt").read_bytes(),
@@ -117,7 +125,7 @@ def _header_licence() -> bytes:
     return Path(str(texts[0].locate())).read_bytes()
 
 
-def _icons(version: int) -> dict[str, bytes]:
+def _icons(model: Model, version: int) -> dict[str, bytes]:
     content = own_files("content")
     icon = (content / "icon.png").read_bytes()
     if version == 2:
@@ -125,11 +133,11 @@ def _icons(version: int) -> dict[str, bytes]:
     return {
         "terminalsAndIcons/icon.png": icon,
         "terminalsAndIcons/icon.svg": (content / "icon.svg").read_bytes(),
-        "terminalsAndIcons/terminalsAndIcons.xml": _terminals(),
+        "terminalsAndIcons/terminalsAndIcons.xml": _terminals(model),
     }
 
 
-def _terminals() -> bytes:
+def _terminals(model: Model) -> bytes:
     root = Element("fmiTerminalsAndIcons", fmiVersion="3.0")
     box = {"x1": "-100", "y1": "-100", "x2": "100", "y2": "100"}
     graphics = SubElement(root, "GraphicalRepresentation")
@@ -139,7 +147,7 @@ def _terminals() -> bytes:
     for name, description, role in TERMINALS:
         attributes = {"name": name, "matchingRule": "plug", "description": description}
         terminal = SubElement(terminals, "Terminal", attributes)
-        for variable in VARIABLES:
+        for variable in model.variables:
             if variable.role is role:
                 attributes = {"variableName": variable.name, "memberName": variable.name}
                 SubElement(terminal, "TerminalMemberVariable", attributes, variableKind="signal")

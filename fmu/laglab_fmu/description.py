@@ -1,27 +1,18 @@
 """Both model descriptions, made from the one table of variables."""
 
 import uuid
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
+from laglab_fmu.models import FLEET_NAME, ROBOT, Model, model_of
 from laglab_fmu.parameters import INTEGRATIONS
 from laglab_fmu.structure import structure_2, structure_3
 from laglab_fmu.units import TYPES, UNITS, DeclaredType, Unit
-from laglab_fmu.variables import (
-    MODEL_NAME,
-    REFERENCE,
-    START,
-    VARIABLES,
-    Kind,
-    Role,
-    Variable,
-)
+from laglab_fmu.variables import START, Kind, Role, Variable
 
-FLEET_NAME = "Fleet"
-FMUS = (f"{MODEL_NAME}2", f"{MODEL_NAME}3", f"{FLEET_NAME}3")
-"""Model name, which is the model identifier too, and version of FMI."""
-DESCRIPTION = "A differential-drive robot with wheel and sensor noise"
+FMUS = ROBOT.fmus
+"""Of the default robot: model name, which is the model identifier too, and version of FMI."""
 STOP_TIME = 10.0
 """[s] of the default experiment."""
 LOG_CATEGORIES = (
@@ -33,7 +24,8 @@ LOG_CATEGORIES = (
 
 def token(fmu: str) -> str:
     """Says that a description and a binary belong together: of this FMU, made of this table."""
-    return "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, repr((fmu, VARIABLES, TYPES, UNITS)))) + "}"
+    table = model_of(fmu).variables
+    return "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, repr((fmu, table, TYPES, UNITS)))) + "}"
 
 
 _CAUSALITY = {
@@ -70,20 +62,20 @@ DEFAULT_EXPERIMENT = {
 }
 
 
-def model_description_2(sources: Sequence[str]) -> bytes:
+def model_description_2(model: Model, sources: Sequence[str]) -> bytes:
     """modelDescription.xml of FMI 2.0: one robot, no `time`, built of these C files."""
     root = Element(
         "fmiModelDescription",
         fmiVersion="2.0",
-        modelName=MODEL_NAME,
-        guid=token(f"{MODEL_NAME}2"),
-        description=DESCRIPTION,
+        modelName=model.name,
+        guid=token(f"{model.name}2"),
+        description=model.description,
         license="MIT",
         generationTool="laglab",
         variableNamingConvention="structured",
         numberOfEventIndicators="0",
     )
-    identifier = {"modelIdentifier": MODEL_NAME}
+    identifier = {"modelIdentifier": model.name}
     for face in ("ModelExchange", "CoSimulation"):
         files = SubElement(
             SubElement(root, face, identifier | _capabilities_2(face)), "SourceFiles"
@@ -94,24 +86,24 @@ def model_description_2(sources: Sequence[str]) -> bytes:
     _types_2(root)
     _log_categories(root)
     SubElement(root, "DefaultExperiment", DEFAULT_EXPERIMENT)
-    variables = [v for v in VARIABLES if v.role not in (Role.TIME, Role.ROBOTS)]
+    variables = [v for v in model.variables if v.role not in (Role.TIME, Role.ROBOTS)]
     index = {variable.name: str(i + 1) for i, variable in enumerate(variables)}
-    model = SubElement(root, "ModelVariables")
+    element = SubElement(root, "ModelVariables")
     for variable in variables:
-        _variable_2(model, variable, index)
-    structure_2(root, variables, index)
+        _variable_2(element, variable, index, model.reference)
+    structure_2(root, variables, index, model.reference)
     return xml_text(root)
 
 
-def model_description_3(fleet: bool = False) -> bytes:
+def model_description_3(model: Model, fleet: bool = False) -> bytes:
     """modelDescription.xml of FMI 3.0: one robot, or arrays of `robots`."""
-    name = FLEET_NAME if fleet else MODEL_NAME
+    name = FLEET_NAME if fleet else model.name
     root = Element(
         "fmiModelDescription",
         fmiVersion="3.0",
         modelName=name,
         instantiationToken=token(f"{name}3"),
-        description=DESCRIPTION + (", many at once" if fleet else ""),
+        description=model.description + (", many at once" if fleet else ""),
         license="MIT",
         generationTool="laglab",
         variableNamingConvention="structured",
@@ -122,13 +114,13 @@ def model_description_3(fleet: bool = False) -> bytes:
     _types_3(root)
     _log_categories(root)
     SubElement(root, "DefaultExperiment", DEFAULT_EXPERIMENT)
-    variables = [v for v in VARIABLES if v.role is not Role.ROBOTS]
+    variables = [v for v in model.variables if v.role is not Role.ROBOTS]
     if fleet:  # first, for importers that follow dimensions while they read
-        variables.insert(0, VARIABLES[REFERENCE["robots"]])
-    model = SubElement(root, "ModelVariables")
+        variables.insert(0, model.variables[model.reference["robots"]])
+    element = SubElement(root, "ModelVariables")
     for variable in variables:
-        _variable_3(model, variable, fleet)
-    structure_3(root, variables)
+        _variable_3(element, variable, fleet, model.reference)
+    structure_3(root, variables, model.reference)
     return xml_text(root)
 
 
@@ -232,10 +224,10 @@ def _start(variable: Variable) -> dict[str, str]:
     return {"start": number(variable.start)}
 
 
-def _common(variable: Variable) -> dict[str, str]:
+def _common(variable: Variable, reference: Mapping[str, int]) -> dict[str, str]:
     attributes = {
         "name": variable.name,
-        "valueReference": str(REFERENCE[variable.name]),
+        "valueReference": str(reference[variable.name]),
         "causality": _CAUSALITY[variable.role],
         "variability": _variability(variable),
         "description": variable.description,
@@ -247,8 +239,10 @@ def _common(variable: Variable) -> dict[str, str]:
     return attributes
 
 
-def _variable_2(model: Element, variable: Variable, index: dict[str, str]) -> None:
-    scalar = SubElement(model, "ScalarVariable", _common(variable))
+def _variable_2(
+    model: Element, variable: Variable, index: dict[str, str], reference: Mapping[str, int]
+) -> None:
+    scalar = SubElement(model, "ScalarVariable", _common(variable, reference))
     attributes = _bounds(variable) | _start(variable)
     if variable.declared_type:
         attributes["declaredType"] = variable.declared_type
@@ -258,17 +252,19 @@ def _variable_2(model: Element, variable: Variable, index: dict[str, str]) -> No
     SubElement(scalar, kind, attributes)
 
 
-def _variable_3(model: Element, variable: Variable, fleet: bool) -> None:
-    attributes = _common(variable) | _bounds(variable) | _start(variable)
+def _variable_3(
+    model: Element, variable: Variable, fleet: bool, reference: Mapping[str, int]
+) -> None:
+    attributes = _common(variable, reference) | _bounds(variable) | _start(variable)
     if variable.declared_type:
         attributes["declaredType"] = variable.declared_type
     if variable.state:
-        attributes["derivative"] = str(REFERENCE[variable.state])
+        attributes["derivative"] = str(reference[variable.state])
     if _CAUSALITY[variable.role] == "output":
         attributes["intermediateUpdate"] = "true"
     element = SubElement(model, variable.kind.value, attributes)
     if fleet and variable.role not in (Role.TIME, Role.ROBOTS):
-        SubElement(element, "Dimension", valueReference=str(REFERENCE["robots"]))
+        SubElement(element, "Dimension", valueReference=str(reference["robots"]))
 
 
 def xml_text(root: Element) -> bytes:

@@ -17,5 +17,9 @@ class FmuNotBuiltError(FmuError):
     """The FMU file is not where the installation should have put it."""
 
 
+class FmuFileError(FmuError):
+    """Somebody's FMU cannot be used here, or not so; names the file and what is in the way."""
+
+
 class CallError(FmuError):
     """The FMU refused a call; carries what it logged."""

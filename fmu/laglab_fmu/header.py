@@ -1,9 +1,9 @@
 """The C header made from the table of variables."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-from laglab_fmu.variables import VARIABLES, Kind, Role, Variable
+from laglab_fmu.variables import Kind, Role, Variable
 
 _C_TYPE = {
     Kind.FLOAT64: "TYPE_FLOAT64",
@@ -46,12 +46,12 @@ static const Variable VARIABLE[VARIABLES] = {{
 """
 
 
-def variables_header(tokens: Mapping[str, str]) -> str:
-    """The text of `variables.h`: tokens by FMU, value references, what C needs of each variable."""
+def variables_header(variables: Sequence[Variable], tokens: Mapping[str, str]) -> str:
+    """The text of `variables.h`: tokens, value references, what C needs of each variable."""
     return _TEMPLATE.format(
-        tokens="\n".join(f'#define TOKEN_{name.upper()} "{text}"' for name, text in tokens.items()),
-        references="\n".join(f"    {_constant(variable)}," for variable in VARIABLES),
-        lines="\n".join(_line(variable) for variable in VARIABLES),
+        tokens="\n".join(f'#define {name} "{text}"' for name, text in tokens.items()),
+        references="\n".join(f"    {_constant(variable)}," for variable in variables),
+        lines="\n".join(_line(variable) for variable in variables),
     )
 
 

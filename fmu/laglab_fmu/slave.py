@@ -21,8 +21,9 @@ from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Slave
 
 from laglab_fmu.compiler import host_platform
-from laglab_fmu.description import FLEET_NAME, token
+from laglab_fmu.description import token
 from laglab_fmu.errors import CallError, FmuNotBuiltError
+from laglab_fmu.models import FLEET_NAME
 from laglab_fmu.parameters import RobotParameters, values
 from laglab_fmu.variables import MODEL_NAME, REFERENCE, Kind, parameter_names
 
@@ -42,8 +43,8 @@ Call = Callable[[], int]
 """An FMI function with all its arguments; gives its status, 0 when it did what it was asked."""
 
 
-def fmu_path(version: int) -> Path:
-    """The installed Robot2.fmu or Robot3.fmu.
+def fmu_path(version: int, name: str = MODEL_NAME) -> Path:
+    """The installed Robot2.fmu or Robot3.fmu, or another robot's.
 
     Raises:
         ValueError: version is neither 2 nor 3.
@@ -51,7 +52,7 @@ def fmu_path(version: int) -> Path:
     """
     if version not in VERSIONS:
         raise ValueError(f"FMI version is {version!r}; it must be 2 or 3")
-    return built(f"{MODEL_NAME}{version}.fmu")
+    return built(f"{name}{version}.fmu")
 
 
 def fleet_path() -> Path:

@@ -31,6 +31,7 @@ UNITS = (
     Unit("rad/s", (("rad", 1), ("s", -1)), ("rev/min", 60 * DEGREE / 360)),
     Unit("m2", (("m", 2),), ("cm2", 1e4)),
     Unit("rad2", (("rad", 2),), ("deg2", DEGREE**2)),
+    Unit("m2/s2", (("m", 2), ("s", -2)), ("cm2/s2", 1e4)),
     Unit("rad2/s2", (("rad", 2), ("s", -2)), ("deg2/s2", DEGREE**2)),
     Unit("1", (), ("%", 100.0)),
 )
@@ -49,5 +50,6 @@ TYPES = (
     DeclaredType(
         "SpeedVariance", "AngularVelocityVariance", "rad2/s2", "Variance of a wheel speed"
     ),
+    DeclaredType("BodySpeedVariance", "VelocityVariance", "m2/s2", "Variance of a speed"),
     DeclaredType("Ratio", "DimensionlessRatio", "1", "Part of a whole"),
 )

@@ -37,7 +37,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
                               const fmi2CallbackFunctions *functions, fmi2Boolean visible, fmi2Boolean logging) {
     UNUSED(resources);
     UNUSED(visible);
-    static const char *const TOKENS[] = {TOKEN_ROBOT2, NULL};
+    static const char *const TOKENS[] = {TOKEN_2, NULL};
     Instance draft = {.kind = type == fmi2ModelExchange ? KIND_MODEL_EXCHANGE : KIND_CO_SIMULATION,
                       .tokens = TOKENS,
                       .log = log_message};

@@ -12,7 +12,7 @@ static void log_message(const Instance *instance, Status status, const char *cat
     logger(instance->environment, (fmi3Status)status, category, message);
 }
 
-static const char *const TOKENS[] = {TOKEN_ROBOT3, TOKEN_FLEET3, NULL};
+static const char *const TOKENS[] = {TOKEN_3, TOKEN_FLEET, NULL};
 
 /* Nothing is to be set here, everything may be read, and an internal step has just ended. */
 static bool intermediate_update(const Instance *instance, double time) {

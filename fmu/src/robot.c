@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "drive.h"
 #include "noise.h"
 
 /* Two instants closer than this part of the sample time are the same instant, computed in two ways. */
@@ -10,64 +11,31 @@ static const double TIME_TOLERANCE = 1e-9;
 
 enum { WHEEL_NOISE, MEASUREMENT_NOISE }; /* streams */
 
-static double clamp(double value, double limit) {
-    return value > limit ? limit : value < -limit ? -limit : value;
-}
-
-/* What is left of a difference between command and drive speed after one sample. */
-static double lag(const Robot *robot) {
-    return robot->motor_time_constant > 0 ? exp(-robot->sample_time / robot->motor_time_constant) : 0.0;
-}
-
-/* Speed of a wheel drive under command: a first-order lag, sampled; without a time constant it is the command. */
-static double drive_speed(const Robot *robot, double reached, double commanded) {
-    if (robot->wheel_speed_max > 0) {
-        commanded = clamp(commanded, robot->wheel_speed_max);
-    }
-    return robot->motor_time_constant > 0 ? commanded + (reached - commanded) * lag(robot) : commanded;
-}
-
-static double drive_tangent(const Robot *robot, double reached, double commanded, const Robot *d, double d_commanded) {
-    if (robot->wheel_speed_max > 0 && fabs(commanded) > robot->wheel_speed_max) {
-        d_commanded = copysign(d->wheel_speed_max, commanded);
-        commanded = clamp(commanded, robot->wheel_speed_max);
-    }
-    if (!(robot->motor_time_constant > 0)) {
-        return d_commanded;
-    }
-    const double tau = robot->motor_time_constant, T = robot->sample_time;
-    const double d_lag = lag(robot) * (T / tau * d->motor_time_constant - d->sample_time) / tau;
-    return d_commanded * (1.0 - lag(robot)) + (reached - commanded) * d_lag;
-}
-
-static double true_radius(const Robot *robot) {
-    return robot->wheel_radius * (1.0 + robot->wheel_radius_error);
-}
-
-static double true_track(const Robot *robot) {
-    return robot->track * (1.0 + robot->track_error);
-}
-
-void robot_speeds(Robot *robot) {
-    const double grip = 1.0 - robot->wheel_slip;
-    const double r = true_radius(robot), L = true_track(robot);
-    const double left = drive_speed(robot, robot->drive_left, robot->omega_left) + robot->wheel_noise_left;
-    const double right = drive_speed(robot, robot->drive_right, robot->omega_right) + robot->wheel_noise_right;
-    /* (1) v = r (w_R + w_L) / 2, omega = r (w_R - w_L) / L */
-    robot->v = grip * (r * (right + left) / 2.0);
-    robot->omega = grip * (r * (right - left) / L);
-}
-
 void robot_derivatives(Robot *robot) {
     robot->der_x = robot->v * cos(robot->theta);
     robot->der_y = robot->v * sin(robot->theta);
     robot->der_theta = robot->omega;
+#ifdef DRIVE_SLIDES
+    robot->der_x -= robot->sideways * sin(robot->theta);
+    robot->der_y += robot->sideways * cos(robot->theta);
+#endif
+}
+
+/* What a robot that can go sideways adds to a move. */
+static void slide(Robot *robot, double T, double course) {
+#ifdef DRIVE_SLIDES
+    robot->x -= T * robot->sideways * sin(course);
+    robot->y += T * robot->sideways * cos(course);
+#else
+    (void)robot, (void)T, (void)course;
+#endif
 }
 
 /* (3) x <- x + T v cos theta, y <- y + T v sin theta, theta <- theta + T omega */
 static void move_euler(Robot *robot, double T) {
     robot->x += T * robot->v * cos(robot->theta);
     robot->y += T * robot->v * sin(robot->theta);
+    slide(robot, T, robot->theta);
     robot->theta += T * robot->omega;
 }
 
@@ -77,6 +45,7 @@ static void move_exact(Robot *robot, double T) {
     const double chord = T * robot->v * (a != 0.0 ? sin(a) / a : 1.0);
     robot->x += chord * cos(robot->theta + a);
     robot->y += chord * sin(robot->theta + a);
+    slide(robot, T * (a != 0.0 ? sin(a) / a : 1.0), robot->theta + a);
     robot->theta += T * robot->omega;
 }
 
@@ -89,45 +58,37 @@ static void move(Robot *robot, double T) {
 }
 
 /* The sample's normal numbers. A variance of zero draws too: switching one noise off leaves the other as it was. */
-static void draw_normal(const Robot *robot, double w[2], double v[3]) {
-    memset(w, 0, 2 * sizeof *w);
+static void draw_normal(const Robot *robot, double w[DRIVE_NOISES], double v[3]) {
+    memset(w, 0, DRIVE_NOISES * sizeof *w);
     memset(v, 0, 3 * sizeof *v);
     if (robot->noise) {
-        noise_normal((uint64_t)robot->seed, (uint64_t)robot->sample, WHEEL_NOISE, 2, w);
+        noise_normal((uint64_t)robot->seed, (uint64_t)robot->sample, WHEEL_NOISE, DRIVE_NOISES, w);
         noise_normal((uint64_t)robot->seed, (uint64_t)robot->sample, MEASUREMENT_NOISE, 3, v);
     }
 }
 
 static void draw(Robot *robot) {
-    double w[2], v[3];
+    double w[DRIVE_NOISES], v[3];
     draw_normal(robot, w, v);
-    const double shaken = robot->wheel_noise_gain, misread = robot->measurement_noise_gain;
-    robot->wheel_noise_left = shaken * (sqrt(robot->wheel_noise_variance) * w[0]);
-    robot->wheel_noise_right = shaken * (sqrt(robot->wheel_noise_variance) * w[1]);
+    const double misread = robot->measurement_noise_gain;
+    drive_shake(robot, w);
     robot->x_meas = robot->x + misread * (sqrt(robot->measurement_variance_x) * v[0]);
     robot->y_meas = robot->y + misread * (sqrt(robot->measurement_variance_y) * v[1]);
     robot->theta_meas = robot->theta + misread * (sqrt(robot->measurement_variance_theta) * v[2]);
-}
-
-/* Of gain sqrt(variance) w; infinite for a variance that leaves zero. */
-static double noise_tangent(double gain, double variance, double w, double d_gain, double d_variance) {
-    const double by_variance = d_variance != 0.0 && w != 0.0 ? gain * w / (2.0 * sqrt(variance)) * d_variance : 0.0;
-    return d_gain * sqrt(variance) * w + by_variance;
 }
 
 void robot_start(Robot *robot) {
     robot->x = robot->x_start;
     robot->y = robot->y_start;
     robot->theta = robot->theta_start;
-    robot->drive_left = robot->drive_right = 0.0;
+    drive_start(robot);
     robot->elapsed = 0.0;
     robot->sample = 0;
     draw(robot);
 }
 
 void robot_sample(Robot *robot) {
-    robot->drive_left = drive_speed(robot, robot->drive_left, robot->omega_left);
-    robot->drive_right = drive_speed(robot, robot->drive_right, robot->omega_right);
+    drive_sample(robot);
     robot->elapsed = 0.0;
     robot->sample++;
     draw(robot);
@@ -168,17 +129,13 @@ void robot_step(Robot *robot, double step) {
 }
 
 static void start_tangent(const Robot *robot, const Robot *d, Robot *change) {
-    double w[2], v[3];
+    double w[DRIVE_NOISES], v[3];
     draw_normal(robot, w, v);
-    const double shaken = robot->wheel_noise_gain, misread = robot->measurement_noise_gain;
-    const double d_shaken = d->wheel_noise_gain, d_misread = d->measurement_noise_gain;
+    const double misread = robot->measurement_noise_gain, d_misread = d->measurement_noise_gain;
     change->x = d->x_start;
     change->y = d->y_start;
     change->theta = d->theta_start;
-    change->wheel_noise_left =
-        noise_tangent(shaken, robot->wheel_noise_variance, w[0], d_shaken, d->wheel_noise_variance);
-    change->wheel_noise_right =
-        noise_tangent(shaken, robot->wheel_noise_variance, w[1], d_shaken, d->wheel_noise_variance);
+    drive_shake_tangent(robot, d, w, change);
     change->x_meas = d->x_start + noise_tangent(misread, robot->measurement_variance_x, v[0], d_misread,
                                                 d->measurement_variance_x);
     change->y_meas = d->y_start + noise_tangent(misread, robot->measurement_variance_y, v[1], d_misread,
@@ -187,34 +144,21 @@ static void start_tangent(const Robot *robot, const Robot *d, Robot *change) {
                                                         d->measurement_variance_theta);
 }
 
-/* (1), differentiated. */
-static void speeds_tangent(const Robot *robot, const Robot *d, Robot *change) {
-    const double grip = 1.0 - robot->wheel_slip, d_grip = -d->wheel_slip;
-    const double r = true_radius(robot), L = true_track(robot);
-    const double d_r = d->wheel_radius * (1.0 + robot->wheel_radius_error) + robot->wheel_radius * d->wheel_radius_error;
-    const double d_L = d->track * (1.0 + robot->track_error) + robot->track * d->track_error;
-    const double left = drive_speed(robot, robot->drive_left, robot->omega_left) + robot->wheel_noise_left;
-    const double right = drive_speed(robot, robot->drive_right, robot->omega_right) + robot->wheel_noise_right;
-    const double d_left =
-        drive_tangent(robot, robot->drive_left, robot->omega_left, d, d->omega_left) + change->wheel_noise_left;
-    const double d_right =
-        drive_tangent(robot, robot->drive_right, robot->omega_right, d, d->omega_right) + change->wheel_noise_right;
-    const double gain = grip * r, d_gain = d_grip * r + grip * d_r;
-    change->v = (gain * (d_right + d_left) + d_gain * (right + left)) / 2.0;
-    change->omega = (gain * (d_right - d_left) + d_gain * (right - left) - robot->omega * d_L) / L;
-}
-
 /* With T, A_k = I + T (der by x, y, theta) is (31) and W_k = T (der by the wheels) is (32), columns left, right. */
 void robot_tangent(const Robot *robot, const Robot *direction, bool starting, Robot *change) {
     *change = *direction;
-    change->wheel_noise_left = change->wheel_noise_right = 0.0;
+    drive_still(change);
     change->x_meas = change->y_meas = change->theta_meas = 0.0;
     if (starting) {
         start_tangent(robot, direction, change);
     }
-    speeds_tangent(robot, direction, change);
+    drive_tangent(robot, direction, change);
     const double c = cos(robot->theta), s = sin(robot->theta);
     change->der_x = change->v * c - robot->v * s * change->theta;
     change->der_y = change->v * s + robot->v * c * change->theta;
     change->der_theta = change->omega;
+#ifdef DRIVE_SLIDES
+    change->der_x -= change->sideways * s + robot->sideways * c * change->theta;
+    change->der_y += change->sideways * c - robot->sideways * s * change->theta;
+#endif
 }

@@ -1,40 +1,11 @@
-/* The differential-drive robot: (1) and (3) of docs/theory.md, with wheel and sensor noise on a grid of samples.
- *
- * SI units, angles counter-clockwise. Every field is eight bytes wide, so a Robot has no padding and copies of it
- * compare by their bytes. The fields' meanings, units and bounds are those of the table of variables.
- */
+/* A robot in the plane: (3) of docs/theory.md, with noise of its drive (`drive.h`) and of its sensor on a grid of
+ * samples. SI units, angles counter-clockwise. */
 #ifndef LAGLAB_ROBOT_H
 #define LAGLAB_ROBOT_H
 
 #include <stdbool.h>
-#include <stdint.h>
 
-enum { INTEGRATION_EULER = 1, INTEGRATION_EXACT = 2 };
-
-typedef struct {
-    /* parameters */
-    double wheel_radius, track, sample_time;
-    double wheel_noise_variance;
-    double measurement_variance_x, measurement_variance_y, measurement_variance_theta;
-    double x_start, y_start, theta_start;
-    double wheel_speed_max, motor_time_constant, wheel_radius_error, track_error, wheel_slip;
-    int64_t seed, noise, integration;
-    /* parameters that may change on the way */
-    double wheel_noise_gain, measurement_noise_gain;
-    /* inputs: commanded wheel speeds */
-    double omega_left, omega_right;
-    /* continuous states */
-    double x, y, theta;
-    /* held from one sample to the next */
-    double drive_left, drive_right;             /* what the wheel drives had reached at the sample */
-    double wheel_noise_left, wheel_noise_right; /* w_L, w_R */
-    double x_meas, y_meas, theta_meas;          /* z_s = x_s + v_s */
-    double elapsed;                             /* time since the sample, in co-simulation */
-    int64_t sample;                             /* its index s */
-    /* following from the rest */
-    double v, omega;
-    double der_x, der_y, der_theta;
-} Robot;
+#include "model.h"
 
 /* Puts the robot at its start pose, with sample 0 taken. Call again after changing parameters. */
 void robot_start(Robot *robot);

@@ -104,7 +104,7 @@ static uint64_t add_to_checksum(uint64_t sum, const void *bytes, size_t size) {
 }
 
 static uint64_t checksum(const unsigned char *bytes, size_t size) {
-    const uint64_t token = add_to_checksum(0xCBF29CE484222325, TOKEN_ROBOT3, sizeof TOKEN_ROBOT3);
+    const uint64_t token = add_to_checksum(0xCBF29CE484222325, TOKEN_3, sizeof TOKEN_3);
     return add_to_checksum(token, bytes + WORD, size - WORD);
 }
 

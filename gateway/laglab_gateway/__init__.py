@@ -6,6 +6,7 @@ from laglab_gateway.drive import Safety
 from laglab_gateway.errors import (
     ConfigError,
     GatewayError,
+    PlantError,
     PlantSilentError,
     StationSilentError,
     TimelineError,
@@ -95,6 +96,7 @@ __all__ = [
     "Parameters",
     "Patience",
     "Plant",
+    "PlantError",
     "PlantSilentError",
     "RandomFates",
     "Reading",

@@ -41,3 +41,7 @@ class TimelineError(GatewayError):
 
 class UnplaceableError(GatewayError):
     """A robot that nobody can put elsewhere from here."""
+
+
+class PlantError(GatewayError):
+    """A plant did what none may; the message names it, and when."""

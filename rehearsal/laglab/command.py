@@ -19,6 +19,8 @@ from laglab.commands import (
     figure,
     fmu,
     maps,
+    plant,
+    plants,
     protocol,
     replay,
     report,
@@ -69,6 +71,7 @@ app.command("scenarios")(scenarios.scenarios)
 app.command("estimators")(estimators.estimators)
 app.command("laws")(estimators.laws)
 app.command("check")(check.check)
+app.command("plants")(plants.plants)
 app.command("scenario")(scenario.scenario)
 app.command("figure")(figure.figure)
 app.command("report")(report.report)
@@ -87,6 +90,7 @@ app.command("controller")(sides.controller)
 app.command("serial")(serial.serial)
 app.add_typer(bench.app, name="bench")
 app.add_typer(fmu.app, name="fmu")
+app.add_typer(plant.app, name="plant")
 app.add_typer(protocol.app, name="protocol")
 app.command("conform")(protocol.conform)
 

@@ -52,15 +52,26 @@ def run(
         if transport == "inline" and out is None:
             recorder = MemoryRecorder()
             ending = rehearse_inline(chosen, recorder, told, controller=controller)
-            return _whole(ending, keep(chosen, Way(), ending, recorder))
+            return _whole(ending, keep(chosen, Way(plant=chosen.plant.called), ending, recorder))
         if out is not None:
             directory = place(chosen, Path(out))
             ending = run_into(directory, chosen, transport, told)
-            return _whole(ending, complete(chosen, Way(transport=transport), ending, directory))
+            return _whole(
+                ending,
+                complete(
+                    chosen, Way(transport=transport, plant=chosen.plant.called), ending, directory
+                ),
+            )
         with tempfile.TemporaryDirectory(prefix="laglab-") as folder:
             directory = Path(folder)
             ending = run_into(directory, chosen, transport, told)
-            done = complete(chosen, Way(transport=transport), ending, directory, figure=False)
+            done = complete(
+                chosen,
+                Way(transport=transport, plant=chosen.plant.called),
+                ending,
+                directory,
+                figure=False,
+            )
             return _whole(ending, _in_memory(done))
 
 

@@ -42,7 +42,7 @@ static int drive2(void *library, int ticks) {
     LOAD(fmi2FreeInstance);
     double pose[3];
     const fmi2CallbackFunctions none = {0};
-    fmi2Component robot = fmi2Instantiate("robot", fmi2CoSimulation, TOKEN_ROBOT2, "", &none, 0, 0);
+    fmi2Component robot = fmi2Instantiate("robot", fmi2CoSimulation, TOKEN_2, "", &none, 0, 0);
     DO(!robot)
     DO(fmi2SetupExperiment(robot, 0, 0.0, 0.0, 0, 0.0))
     DO(fmi2EnterInitializationMode(robot))
@@ -68,7 +68,7 @@ static int drive3(void *library, int ticks) {
     double pose[3], last;
     bool event, end, early;
     fmi3Instance robot =
-        fmi3InstantiateCoSimulation("robot", TOKEN_ROBOT3, "", false, false, false, false, NULL, 0, NULL, NULL, NULL);
+        fmi3InstantiateCoSimulation("robot", TOKEN_3, "", false, false, false, false, NULL, 0, NULL, NULL, NULL);
     DO(!robot)
     DO(fmi3EnterInitializationMode(robot, false, 0.0, 0.0, false, 0.0))
     DO(fmi3ExitInitializationMode(robot))

@@ -92,7 +92,7 @@ static void damage(void) {
     if (draw(2) && bytes_used > 64) memcpy(bytes + 8 * draw(bytes_used / 8), &value, sizeof value);
     if (!draw(4)) bytes_used = draw(bytes_used + 9);
     if (draw(2) && bytes_used > 8) {
-        const uint64_t sum = fold(fold(0xCBF29CE484222325, TOKEN_ROBOT3, sizeof TOKEN_ROBOT3), bytes + 8, bytes_used - 8);
+        const uint64_t sum = fold(fold(0xCBF29CE484222325, TOKEN_3, sizeof TOKEN_3), bytes + 8, bytes_used - 8);
         memcpy(bytes, &sum, sizeof sum);
     }
 }
@@ -225,17 +225,17 @@ int main(int count, char **arguments) {
     random_state = strtoull(arguments[1], NULL, 10) * 2654435761u + 1;
     const unsigned long calls = strtoul(arguments[2], NULL, 10);
     const fmi2CallbackFunctions functions = {.logger = note2};
-    fmi2Component c2[2] = {fmi2Instantiate("a", fmi2CoSimulation, TOKEN_ROBOT2, NULL, &functions, 0, 0),
-                           fmi2Instantiate("b", fmi2ModelExchange, TOKEN_ROBOT2, NULL, &functions, 0, 1)};
-    fmi3Instance c3[4] = {fmi3InstantiateCoSimulation("c", TOKEN_ROBOT3, NULL, 0, 0, 0, 0, NULL, 0, NULL, note3, NULL),
-                          fmi3InstantiateModelExchange("d", TOKEN_FLEET3, NULL, 0, 1, NULL, note3),
-                          fmi3InstantiateCoSimulation("h", TOKEN_FLEET3, NULL, 0, 0, 0, 1, NULL, 0, NULL, note3, update3),
-                          fmi3InstantiateCoSimulation("i", TOKEN_ROBOT3, NULL, 0, 0, 1, 0, NULL, 0, NULL, note3, update3)};
+    fmi2Component c2[2] = {fmi2Instantiate("a", fmi2CoSimulation, TOKEN_2, NULL, &functions, 0, 0),
+                           fmi2Instantiate("b", fmi2ModelExchange, TOKEN_2, NULL, &functions, 0, 1)};
+    fmi3Instance c3[4] = {fmi3InstantiateCoSimulation("c", TOKEN_3, NULL, 0, 0, 0, 0, NULL, 0, NULL, note3, NULL),
+                          fmi3InstantiateModelExchange("d", TOKEN_FLEET, NULL, 0, 1, NULL, note3),
+                          fmi3InstantiateCoSimulation("h", TOKEN_FLEET, NULL, 0, 0, 0, 1, NULL, 0, NULL, note3, update3),
+                          fmi3InstantiateCoSimulation("i", TOKEN_3, NULL, 0, 0, 1, 0, NULL, 0, NULL, note3, update3)};
     fmi2FMUstate state2 = NULL;
     fmi3FMUState state3 = NULL;
     if (fmi2Instantiate("e", fmi2CoSimulation, "wrong", NULL, NULL, 0, 0)) return 1;
-    if (fmi2Instantiate("f", fmi2CoSimulation, TOKEN_ROBOT3, NULL, NULL, 0, 0)) return 1;
-    if (fmi2Instantiate("g", (fmi2Type)7, TOKEN_ROBOT2, NULL, NULL, 0, 0)) return 1;
+    if (fmi2Instantiate("f", fmi2CoSimulation, TOKEN_3, NULL, NULL, 0, 0)) return 1;
+    if (fmi2Instantiate("g", (fmi2Type)7, TOKEN_2, NULL, NULL, 0, 0)) return 1;
     if (fmi3InstantiateModelExchange(NULL, NULL, NULL, 0, 0, NULL, NULL)) return 1;
     for (unsigned long i = 0; i < calls; i++) {
         call2(c2[draw(2)], &state2);

@@ -9,10 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from laglab.runs.robot_side import gateway_config, link_fates, robot_parameters, shown_parameters
+from laglab.runs.plant.shipped import robot_parameters
+from laglab.runs.robot_side import gateway_config, link_fates, shown_parameters
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario, changed, load
 from laglab.scenario.keys import ANY, rows
+from laglab.scenario.model import FILES
 from laglab_control import ESTIMATORS, LAWS
 from laglab_gateway.link.log import LINK_HEADER
 
@@ -63,6 +65,23 @@ LINK: Keys = {
     "replay": st.sampled_from(["link.csv", "./link.csv", "earlier run/link.csv"]),
 }
 PLANT_EVENT: Keys = {"at": st.floats(0, 1e6), "place": POSE}
+THEIRS = st.from_regex(r"[A-Za-z_(][\w.\[\]() -]{0,12}", fullmatch=True)
+INPUTS = ("v", "omega", "omega_left", "omega_right")
+OUTPUTS = ("x", "y", "theta", "x_meas", "y_meas", "theta_meas")
+START: Keys = dict.fromkeys(("x", "y", "theta"), THEIRS)
+FOREIGN: Keys = {
+    "fmu": st.sampled_from(["own.fmu", "./own.fmu", "robots/own.fmu"]),
+    "inputs": st.fixed_dictionaries(dict.fromkeys(INPUTS[:2], THEIRS))
+    | st.fixed_dictionaries(dict.fromkeys(INPUTS[2:], THEIRS)),
+    "outputs": st.fixed_dictionaries(dict.fromkeys(OUTPUTS[:3], THEIRS))
+    | st.fixed_dictionaries(dict.fromkeys(OUTPUTS, THEIRS)),
+}
+OF_FOREIGN: Keys = {
+    "start": table(START),
+    "parameters": st.dictionaries(
+        THEIRS, st.integers(-9, 9) | HERE | st.booleans() | TEXT | st.lists(HERE), max_size=3
+    ),
+}
 PLANT: Keys = {
     "fmi": st.sampled_from([2, 3]),
     "integration": st.sampled_from(["euler", "exact"]),
@@ -77,6 +96,17 @@ PLANT: Keys = {
     "wheel_slip": st.floats(0, 1, exclude_max=True),
     "event": st.lists(st.fixed_dictionaries(PLANT_EVENT), max_size=2),
 }
+BROUGHT: Keys = {
+    "kind": st.sampled_from(["own:Robot", "installed"]),
+    "options": st.dictionaries(
+        THEIRS, HERE | st.dictionaries(THEIRS, TEXT, min_size=1, max_size=2), max_size=3
+    ),
+}
+ANY_PLANT = (
+    table(PLANT)
+    | st.fixed_dictionaries(FOREIGN, optional=OF_FOREIGN | PLANT)
+    | st.fixed_dictionaries({"kind": BROUGHT.pop("kind")}, optional=BROUGHT | PLANT)
+)
 ESTIMATOR: Keys = {
     "kind": st.sampled_from(list(ESTIMATORS)),
     "compare": st.lists(st.sampled_from([name for name in ESTIMATORS if name != "raw"])),
@@ -119,7 +149,7 @@ TOP: Keys = {
     "pace": st.sampled_from(["lockstep", "realtime"]),
     "speed": POSITIVE,
     "silence_timeout": POSITIVE,
-    "plant": table(PLANT),
+    "plant": ANY_PLANT,
     "estimator": table(ESTIMATOR),
     "law": table(LAW) | st.fixed_dictionaries(WITH_A_PATH, optional=LAW),
     "link": table(LINK),
@@ -142,8 +172,12 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def at(folder: Path, fields: dict[str, Any]) -> Scenario:
     """The scenario whose file stands in that folder."""
-    replay, path = fields.get("link", {}).get("replay"), fields.get("law", {}).get("path", "")
-    files = {"link.replay": str(folder / replay)} if replay else {}
+    files = {
+        f"{table}.{key}": str(folder / path)
+        for table, key in FILES
+        if (path := fields.get(table, {}).get(key))
+    }
+    path = fields.get("law", {}).get("path", "")
     files |= {"law.path": str(folder / path)} if path.endswith("csv") else {}
     return changed(Scenario(), {**fields, **files})
 
@@ -151,7 +185,10 @@ def at(folder: Path, fields: dict[str, Any]) -> Scenario:
 def test_the_strategies_know_every_key() -> None:
     known = {
         *TOP,
-        *(f"plant.{key}" for key in PLANT),
+        *(f"plant.{key}" for key in (*PLANT, *FOREIGN, *OF_FOREIGN, "kind", "options")),
+        *(f"plant.inputs.{key}" for key in INPUTS),
+        *(f"plant.outputs.{key}" for key in OUTPUTS),
+        *(f"plant.start.{key}" for key in START),
         *(f"estimator.{key}" for key in ESTIMATOR),
         *(f"law.{key}" for key in {**LAW, **WITH_A_PATH}),
         *(f"link.{key}" for key in LINK),

@@ -131,7 +131,7 @@ def plain_loop(robots: int, ticks: int, stack: ExitStack) -> Turn:
     sources = {
         name: text
         for name, text in c_files().items()
-        if name.endswith(".h") or name.startswith(("robot", "noise"))
+        if name.endswith(".h") or name.startswith(("robot", "drive", "noise"))
     }
     library = c_library(Path(__file__).with_name("plain_loop.c"), sources, stack)
     library.plain_start.restype = ctypes.c_void_p

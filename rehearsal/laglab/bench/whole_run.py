@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 from laglab.errors import RunError
 from laglab.runs.ending import Ending
+from laglab.runs.plant.shipped import robot_parameters
 from laglab.runs.rehearse import Transport, rehearse_apart
-from laglab.runs.robot_side import Setup, robot_parameters
+from laglab.runs.robot_side import Setup
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario, load
 from laglab_control import INITIAL_VARIANCE, StationConfig

@@ -28,9 +28,9 @@ def build(
         ),
     ] = False,
 ) -> None:
-    """Build Robot2.fmu, Robot3.fmu and Fleet3.fmu.
+    """Build the FMUs of the robots that ship.
 
-    For this machine, or for all.
+    For FMI 2 and 3, and for this machine or for all.
     """
     require(STEPPING)
     folder = folder_place("--out", out or Path(laglab_fmu.__file__).parent)

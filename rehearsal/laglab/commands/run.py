@@ -14,6 +14,7 @@ from laglab.extras import REHEARSING, SEEING, require
 from laglab.progress import progress_of
 from laglab.results.complete import Way
 from laglab.results.place import place
+from laglab.runs.plant import check_plant
 from laglab.runs.rehearse import Transport
 from laglab.runs.robot_side import Setup
 from laglab.runs.station_side import check_parts
@@ -76,7 +77,9 @@ def run(
     setup = Setup(plant, key, plant_key=plant_key)
     setup.check()
     check_parts(scenario)
-    way = Way("both", transport, plant or "fmu")
+    if plant is None:
+        check_plant(scenario)
+    way = Way("both", transport, plant or scenario.plant.called)
     with shown_live(scenario, way, live, open_) as page:
         directory = place(scenario, out, force)
         with progress_of(scenario) as told:

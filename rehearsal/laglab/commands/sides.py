@@ -102,7 +102,7 @@ def gateway(
     ):
         for each in (link, *watchers):
             refuse_open_door(each, key, unsigned)
-        way = Way("robot", link.name, plant or "fmu")
+        way = Way("robot", link.name, plant or scenario.plant.called)
         page = stack.enter_context(shown_live(scenario, way, live, open_))
         directory = place(scenario, out, force)
         _say_whom_we_wait_for("the controller", link)

@@ -54,7 +54,7 @@ class Way(NamedTuple):
 
     side: Side = "both"
     transport: str = "inline"
-    plant: str = "fmu"
+    plant: str = "robot"
 
 
 def complete(

@@ -9,11 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-import laglab_fmu
 from laglab.errors import ScenarioError
 from laglab.live import Controls
-from laglab.runs.hand import MovedByHand
-from laglab.runs.plant import FmuPlant
+from laglab.runs.plant import OpenPlant, open_plant
 from laglab.scenario import Scenario
 from laglab_gateway import (
     IDEAL,
@@ -23,7 +21,6 @@ from laglab_gateway import (
     GatewayConfig,
     Parameter,
     Parameters,
-    Plant,
     RandomFates,
     RecordedFates,
     Relay,
@@ -90,27 +87,6 @@ class Setup:
             )
 
 
-def robot_parameters(scenario: Scenario) -> laglab_fmu.RobotParameters:
-    """The robot that the FMU simulates."""
-    plant = scenario.plant
-    return laglab_fmu.RobotParameters(
-        wheel_radius=plant.wheel_radius,
-        track=plant.track,
-        sample_time=scenario.sample_time,
-        wheel_noise_variance=plant.wheel_noise_variance,
-        measurement_variance=plant.measurement_variance,
-        start=scenario.start,
-        seed=scenario.seed,
-        noise=scenario.noise,
-        integration=plant.integration,
-        wheel_speed_max=plant.wheel_speed_max,
-        motor_time_constant=plant.motor_time_constant,
-        wheel_radius_error=plant.wheel_radius_error,
-        track_error=plant.track_error,
-        wheel_slip=plant.wheel_slip,
-    )
-
-
 def shown_parameters(scenario: Scenario) -> Parameters:
     """What a ground station reads: the gateway's own, the law's gains, the noise [SI units]."""
     noise = scenario.plant.measurement_variance if scenario.noise else (0.0, 0.0, 0.0)
@@ -150,19 +126,13 @@ def robot_services(
     return Services(shown_parameters(scenario), armed, timesync, placeable, scenario.origin)
 
 
-@contextmanager
-def open_gateway(
-    scenario: Scenario, sender: Sender | None = None, armed: bool = True
-) -> Iterator[Gateway]:
-    """The robot's side, its FMU loaded until the context ends."""
-    parameters = robot_parameters(scenario)
-    with laglab_fmu.Robot.open(scenario.plant.fmi, parameters) as robot:
-        plant: Plant = FmuPlant(robot, parameters)
-        if events := scenario.plant.event:
-            plant = MovedByHand(plant, events, scenario.sample_time)
-        free_running = scenario.pace == "realtime"
-        services = robot_services(scenario, free_running, armed=armed)
-        yield Gateway(plant, gateway_config(scenario), link_fates(scenario), services, sender)
+def make_gateway(
+    scenario: Scenario, opened: OpenPlant, sender: Sender | None = None, armed: bool = True
+) -> Gateway:
+    """The robot's side of a plant that is stepped."""
+    free_running = scenario.pace == "realtime"
+    services = robot_services(scenario, free_running, opened.placeable, armed)
+    return Gateway(opened.plant, gateway_config(scenario), link_fates(scenario), services, sender)
 
 
 DIRECTIONS: tuple[Direction, ...] = ("command", "measurement")
@@ -216,8 +186,9 @@ def open_robot(scenario: Scenario, setup: Setup) -> Iterator[OpenRobot]:
     setup.check()
     with Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, setup.key) as codec:
         if setup.plant is None:
-            with open_gateway(scenario, codec.sender, setup.armed) as gateway:
-                serve = partial(_serve_simulated, scenario, gateway)
+            with open_plant(scenario) as plant:
+                gateway = make_gateway(scenario, plant, codec.sender, setup.armed)
+                serve = partial(_serve_simulated, scenario, gateway, plant.warnings)
                 yield OpenRobot(
                     gateway.services, codec, serve, setup.unsigned, setup.key is not None
                 )
@@ -237,8 +208,12 @@ def open_robot(scenario: Scenario, setup: Setup) -> Iterator[OpenRobot]:
                 yield OpenRobot(relay.services, codec, serve, setup.unsigned, setup.key is not None)
 
 
-def _serve_simulated(scenario: Scenario, gateway: Gateway, around: Surroundings) -> Served:
+def _serve_simulated(
+    scenario: Scenario, gateway: Gateway, warnings: Sequence[str], around: Surroundings
+) -> Served:
     """At the scenario's pace."""
+    for text in warnings:
+        around.warn(text)
     if scenario.pace == "lockstep":
         return serve_lockstep(gateway, around)
     return serve_realtime(gateway, around, scenario.sample_time / scenario.speed)

@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from laglab.errors import ScenarioError
 from laglab.scenario import paths
-from laglab.scenario.model import Scenario
+from laglab.scenario.model import FILES, Scenario
 from laglab.scenario.overrides import Overrides, put
 from laglab.scenario.toml import parsed
 
@@ -86,9 +86,10 @@ def _read(reference: str) -> tuple[dict[str, Any], Path]:
 
 def _anchored(fields: dict[str, Any], folder: Path) -> dict[str, Any]:
     """With the files that it names, relative to its folder, as ones that can be opened."""
-    match fields:
-        case {"link": {"replay": str(replay)}}:
-            fields["link"]["replay"] = str(folder / replay)
+    for table, key in FILES:
+        match fields.get(table):
+            case dict(keys) if isinstance(keys.get(key), str):
+                keys[key] = str(folder / keys[key])
     match fields:
         case {"law": {"path": str(path)}}:
             fields["law"]["path"] = paths.anchored(path, folder)

@@ -23,6 +23,8 @@ from laglab_control import FAR, RobotModel, is_far
 from laglab_gateway import Origin, Safety
 from laglab_gateway.values import Duration, Number, Positive, Switch, Whole, described
 
+FILES = (("link", "replay"), ("plant", "fmu"))
+"""Keys that name files, relative to the scenario's folder."""
 LAST = 2**32 - 1
 """The last tick that the dialect can tell."""
 
@@ -142,8 +144,9 @@ class Scenario(Table):
     def fields(self, folder: Path | None = None) -> dict[str, Any]:
         """As in a file, without what is not set. Paths are relative to `folder`, or absolute."""
         fields: dict[str, Any] = plain(self.model_dump(by_alias=True, exclude_none=True))
-        if folder is not None and self.link.replay is not None:
-            fields["link"]["replay"] = os.path.relpath(self.link.replay, folder.resolve())
+        for table, key in FILES:
+            if folder is not None and (path := fields[table].get(key)):
+                fields[table][key] = os.path.relpath(path, folder.resolve())
         if folder is not None and self.law.path is not None:
             fields["law"]["path"] = paths.relative(self.law.path, folder)
         return fields

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.runs.robot_side import link_fates, robot_parameters
+from laglab.runs.plant.shipped import robot_parameters
+from laglab.runs.robot_side import link_fates
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario
 from laglab.studies.schedule import schedule_of
@@ -69,6 +70,9 @@ def why_one_by_one(scenario: Scenario) -> str | None:
             scenario.estimator.kind not in BATCHED
         ),
         f"there is no law {scenario.law.kind} for many robots": scenario.law.kind != "polar",
+        f"of {scenario.plant.called} there is one a run, and no fleet (plant)": (
+            not scenario.plant.has_fleet
+        ),
         "somebody moves the robot (plant.event)": bool(scenario.plant.event),
         "the run does not end by itself (duration)": scenario.last_tick is None,
         "the clock paces it (pace)": scenario.pace != "lockstep",

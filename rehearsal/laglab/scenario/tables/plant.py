@@ -1,14 +1,102 @@
 """`[plant]`: the simulated robot, and what the controller believes of it."""
 
-from typing import Annotated, Literal, Self
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
-from laglab.scenario.tables.table import POSE, Pose, Table, as_in
+from laglab.scenario.tables.table import POSE, Options, OptionsTable, Pose, Table, as_in
 from laglab_control import RobotModel
-from laglab_gateway.values import NotNegative, Number, Positive, Seconds, described, saying
+from laglab_gateway.values import (
+    NotNegative,
+    Number,
+    Positive,
+    Seconds,
+    Switch,
+    Whole,
+    described,
+    saying,
+)
 
 Share = Annotated[Number, Field(gt=-1, lt=1)]
+SHIPPED = {
+    "robot": "differential drive, told its wheels' speeds: the paper's robot",
+    "car": "car-like: drives with its rear wheels, steers with its front ones, which lag",
+    "omni": "omnidirectional on three wheels, driven ahead and turned",
+}
+"""The robots that come with the package, and what each is."""
+POSE_NAMES = ("x", "y", "theta")
+Name = Annotated[str, Field(strict=True, min_length=1)]
+"""Of a variable of the FMU; an element of an array is `NAME[0]`."""
+
+
+def _flat(tables: object, above: str = "") -> Any:
+    """`motor.gain = 1` is a table in TOML, and one name in an FMU."""
+    if not isinstance(tables, Mapping):
+        return tables
+    flat: dict[str, object] = {}
+    for name, value in tables.items():
+        deeper = isinstance(value, Mapping)
+        flat |= _flat(value, f"{above}{name}.") if deeper else {f"{above}{name}": value}
+    return flat
+
+
+ParameterValue = Switch | Whole | Number | str | tuple[Number, ...]
+ParameterValues = Annotated[
+    dict[str, ParameterValue],
+    saying("a table of names and numbers, true or false, texts or lists of numbers"),
+    BeforeValidator(_flat),
+    AfterValidator(OptionsTable),
+]
+
+
+class PlantInputs(Table):
+    """The FMU's inputs: body speeds, or wheel speeds, which follow from r and L by (1)."""
+
+    v: Annotated[Name | None, described("-", "Takes the speed [m/s].")] = None
+    omega: Annotated[Name | None, described("-", "Takes the turning speed [rad/s].")] = None
+    omega_left: Annotated[Name | None, described("-", "Takes the left wheel's [rad/s].")] = None
+    omega_right: Annotated[Name | None, described("-", "Takes the right wheel's [rad/s].")] = None
+
+    @model_validator(mode="after")
+    def _one_pair(self) -> Self:
+        if set(named(self)) not in ({"v", "omega"}, {"omega_left", "omega_right"}):
+            raise ValueError("give either v and omega, or omega_left and omega_right")
+        return self
+
+
+class PlantOutputs(Table):
+    """The FMU's outputs: where the robot is, and what a sensor of its own says of that."""
+
+    x: Annotated[Name | None, described("-", "Gives x [m].")] = None
+    y: Annotated[Name | None, described("-", "Gives y [m].")] = None
+    theta: Annotated[Name | None, described("-", "Gives the heading θ [rad].")] = None
+    x_meas: Annotated[Name | None, described("-", "Gives x as measured [m].")] = None
+    y_meas: Annotated[Name | None, described("-", "Gives y as measured [m].")] = None
+    theta_meas: Annotated[Name | None, described("-", "Gives θ as measured [rad].")] = None
+
+    @model_validator(mode="after")
+    def _whole_pose(self) -> Self:
+        pose, measured = set(POSE_NAMES), {f"{name}_meas" for name in POSE_NAMES}
+        if set(named(self)) not in (pose, pose | measured):
+            raise ValueError(
+                "give x, y and theta; where it has a sensor, x_meas, y_meas and theta_meas, too"
+            )
+        return self
+
+
+class PlantStart(Table):
+    """The FMU's variables that say where it starts; where none is, it starts where it starts."""
+
+    x: Annotated[Name | None, described("-", "Takes x of the start [m].")] = None
+    y: Annotated[Name | None, described("-", "Takes y of the start [m].")] = None
+    theta: Annotated[Name | None, described("-", "Takes θ of the start [rad].")] = None
+
+
+def named(table: Table | None) -> dict[str, str]:
+    """Ours → theirs, in the order of the table's keys."""
+    return table.model_dump(exclude_none=True) if table else {}
 
 
 class PlantEvent(Table):
@@ -32,6 +120,37 @@ class PlantEvent(Table):
 class PlantTable(Table):
     """The robot. Its errors, limits and lags are its own; the controller does not know of them."""
 
+    kind: Annotated[
+        Name,
+        described(
+            "-",
+            f"Which robot: {', '.join(SHIPPED)}; one that is installed (`laglab plants`), or "
+            "`module:Class`.",
+        ),
+    ] = "robot"
+    fmu: Annotated[
+        Annotated[Path, AfterValidator(Path.resolve)] | None,
+        described("-", "Anyone's FMU in its place, FMI 2 or 3, relative to the scenario's folder."),
+    ] = None
+    inputs: Annotated[
+        PlantInputs | None, described("-", "Which inputs of `fmu` are the command.")
+    ] = None
+    outputs: Annotated[
+        PlantOutputs | None, described("-", "Which outputs of `fmu` are the pose.")
+    ] = None
+    start: Annotated[
+        PlantStart | None, described("-", "Which variables of `fmu` take the start pose.")
+    ] = None
+    parameters: Annotated[
+        ParameterValues,
+        described(
+            "-", "Start values of the FMU's variables, by its own names; of `car` and `omni`, too."
+        ),
+    ] = Field(default_factory=OptionsTable)  # type: ignore[arg-type]
+    options: Annotated[
+        Options,
+        described("-", "What a robot that somebody brings as a class is told besides."),
+    ] = Field(default_factory=OptionsTable)
     fmi: Annotated[Literal[2, 3], described("1", "The FMI version of its FMU, 2 or 3.")] = 3
     integration: Annotated[
         Literal["euler", "exact"],
@@ -72,3 +191,51 @@ class PlantTable(Table):
     event: Annotated[
         tuple[PlantEvent, ...], described("-", "Times at which somebody moves the robot by hand.")
     ] = ()
+
+    @model_validator(mode="after")
+    def _of_one_kind(self) -> Self:
+        ours = self.kind in SHIPPED
+        if self.fmu is not None and self.kind != "robot":
+            raise ValueError("give either kind or fmu")
+        if self.fmu is not None and (self.inputs is None or self.outputs is None):
+            raise ValueError(
+                "with fmu give inputs and outputs, too: `laglab plant check FILE` proposes them"
+            )
+        for name in ("inputs", "outputs", "start"):
+            if self.fmu is None and getattr(self, name):
+                raise ValueError(f"{name}: there is no fmu that it could be of")
+        if self.parameters and not self.is_mapped:
+            raise ValueError(f"parameters: {self.kind} has none that are set by name")
+        if ours and self.options:
+            raise ValueError("options: only a robot that somebody brings as a class has some")
+        return self
+
+    @property
+    def wired_inputs(self) -> dict[str, str]:
+        """Ours → the FMU's."""
+        return named(self.inputs)
+
+    @property
+    def wired_outputs(self) -> dict[str, str]:
+        """Ours → the FMU's, the pose first."""
+        return named(self.outputs)
+
+    @property
+    def wired_start(self) -> dict[str, str]:
+        """Ours → the FMU's, those of x, y, theta that can be said."""
+        return named(self.start)
+
+    @property
+    def is_mapped(self) -> bool:
+        """Whether it is an FMU whose variables go by a map of names: anyone's, or ours but one."""
+        return self.fmu is not None or self.kind in set(SHIPPED) - {"robot"}
+
+    @property
+    def has_fleet(self) -> bool:
+        """Whether many of it can be stepped at once."""
+        return self.fmu is None and self.kind == "robot"
+
+    @property
+    def called(self) -> str:
+        """In a word."""
+        return self.fmu.name if self.fmu is not None else self.kind

@@ -11,7 +11,7 @@ from pydantic import Field, ValidationError, model_validator
 from laglab.errors import StudyError
 from laglab.scenario import Overrides, Scenario, changed, load, shipped_names
 from laglab.scenario.loading import made_of
-from laglab.scenario.model import plain
+from laglab.scenario.model import FILES, plain
 from laglab.scenario.paths import anchored
 from laglab.scenario.tables.table import Table
 from laglab.scenario.toml import parsed
@@ -125,7 +125,7 @@ def _anchored(key: str, values: list[object], folder: Path) -> list[object]:
     """Paths are relative to the study's file."""
     if key == "law.path":
         return [anchored(str(value), folder.resolve()) for value in values]
-    if key == "link.replay":
+    if tuple(key.split(".")) in FILES:
         return [str((folder / str(value)).resolve()) for value in values]
     return values
 

@@ -12,13 +12,12 @@ from pathlib import Path
 from laglab.errors import StudyError
 from laglab.scenario import Scenario, changed
 from laglab.scenario.explain import spelled
+from laglab.scenario.model import FILES
 from laglab.studies.sweep.cell import Cell
 from laglab.version import code_version
 from laglab_control import FAR
 from laglab_control.plugins import Group, source_of
 
-FILES = ("link.replay", "law.path")
-"""Keys that name one."""
 MOST_SEEDS = 250
 """Of one cell: as many runs as are one task, with or without a batch."""
 
@@ -88,13 +87,13 @@ class Study:
 
     def _files(self) -> Iterator[tuple[str, str]]:
         """That the scenarios name, and a hash of each."""
-        link, law = self.scenario.link, self.scenario.law
-        named = [str(each) for each in (link.replay, law.path) if each]
-        named += [str(each) for key in FILES for each in self.grid.get(key, ())]
-        for name in named:
-            path = Path(name)
-            if path.is_file():
-                yield name, hashlib.sha256(path.read_bytes()).hexdigest()
+        fields = self.scenario.fields()
+        for table, key in (*FILES, ("law", "path")):
+            of_base, of_grid = fields[table].get(key), self.grid.get(f"{table}.{key}", ())
+            for name in map(str, filter(None, (of_base, *of_grid))):
+                path = Path(name)
+                if path.is_file():
+                    yield name, hashlib.sha256(path.read_bytes()).hexdigest()
 
     def _brought(self) -> Iterator[tuple[str, str]]:
         """Names of what somebody brought, and a hash of the module of each."""

@@ -1,4 +1,4 @@
-"""The robot FMU as the gateway's plant."""
+"""The robot that ships, as the gateway's plant."""
 
 from __future__ import annotations
 
@@ -6,15 +6,42 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from laglab.scenario import Scenario
+from laglab_fmu import RobotParameters
 from laglab_gateway import Reading
 
 if TYPE_CHECKING:
-    from laglab_fmu import Robot, RobotParameters
-
+    from laglab_fmu import Robot
 
 SEEDS, NEXT_SEED = 2**31, 7919
 """How many seeds there are, and how far apart those of a run are, of which each placing takes one:
 not a neighbour, which is likely to be another run's."""
+
+
+def robot_parameters(scenario: Scenario) -> RobotParameters:
+    """The robot that the FMU simulates."""
+    plant = scenario.plant
+    return RobotParameters(
+        wheel_radius=plant.wheel_radius,
+        track=plant.track,
+        sample_time=scenario.sample_time,
+        wheel_noise_variance=plant.wheel_noise_variance,
+        measurement_variance=plant.measurement_variance,
+        start=scenario.start,
+        seed=scenario.seed,
+        noise=scenario.noise,
+        integration=plant.integration,
+        wheel_speed_max=plant.wheel_speed_max,
+        motor_time_constant=plant.motor_time_constant,
+        wheel_radius_error=plant.wheel_radius_error,
+        track_error=plant.track_error,
+        wheel_slip=plant.wheel_slip,
+    )
+
+
+def wheel_speeds(v: float, omega: float, radius: float, half_track: float) -> tuple[float, float]:
+    """(1), solved for the left and the right wheel [rad/s]."""
+    return (v - omega * half_track) / radius, (v + omega * half_track) / radius
 
 
 class FmuPlant:
@@ -34,9 +61,8 @@ class FmuPlant:
 
     def step(self, v: float, omega: float) -> None:
         """Equation (1) solved for the wheel speeds, then one tick of (3)."""
-        omega_left = (v - omega * self._half_track) / self._wheel_radius
-        omega_right = (v + omega * self._half_track) / self._wheel_radius
-        self._reading = Reading(*self._robot.step(omega_left, omega_right))
+        wheels = wheel_speeds(v, omega, self._wheel_radius, self._half_track)
+        self._reading = Reading(*self._robot.step(*wheels))
 
     def place(self, x: float, y: float, theta: float) -> None:
         """Start the FMU again from there, with noise that it did not have before."""

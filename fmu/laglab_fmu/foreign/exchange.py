@@ -1,0 +1,121 @@
+"""An FMU of model exchange, integrated by FMPy's CVode: what co-simulation would do inside.
+
+The order of the calls is that of FMPy's own `simulate_fmu`, a communication step at a time.
+"""
+
+from collections.abc import Callable
+from ctypes import Array, c_double
+from typing import Any
+
+from fmpy.model_description import ModelDescription
+
+from laglab_fmu.errors import CallError
+
+TOLERANCE = 1e-6
+"""Relative, where the FMU asks for none."""
+SAME = 1e-9
+"""Times closer than this part of a step are the same, computed in two ways."""
+ASKS_TO_END = "it asks to end the simulation"
+
+
+class _HeldInput:
+    """For FMPy's solver: inputs do not change within a step."""
+
+    def apply(self, _time: float) -> None:
+        """Nothing to do."""
+
+
+class Integrator:
+    """From initialization on; `fmu` is in event mode."""
+
+    def __init__(self, fmu: Any, description: ModelDescription, longest: float) -> None:
+        self._fmu = fmu
+        self._completes = bool(description.modelExchange.needsCompletedIntegratorStep)
+        self._is_3 = description.fmiMajorVersion == 3
+        self._problem: Exception | None = None
+        self._next_event: float | None = None
+        self._update(0.0)
+        self._solver = self._make_solver(description, longest)
+
+    def _make_solver(self, description: ModelDescription, longest: float) -> Any:
+        from fmpy.sundials import CVodeSolver  # loads the library
+
+        fmu, experiment = self._fmu, description.defaultExperiment
+        told = experiment.tolerance if experiment is not None else None
+        get_dx = fmu.getContinuousStateDerivatives if self._is_3 else fmu.getDerivatives
+        return CVodeSolver(
+            nx=description.numberOfContinuousStates,
+            nz=description.numberOfEventIndicators,
+            get_x=self._guarded(fmu.getContinuousStates),
+            set_x=self._guarded(fmu.setContinuousStates),
+            get_dx=self._guarded(get_dx),
+            get_z=self._guarded(fmu.getEventIndicators),
+            get_nominals=self._guarded(fmu.getNominalsOfContinuousStates),
+            set_time=self._guarded(fmu.setTime),
+            input=_HeldInput(),
+            startTime=0.0,
+            maxStep=longest,
+            relativeTolerance=float(told) if told else TOLERANCE,
+        )
+
+    def _guarded(self, call: Callable[..., object]) -> Callable[..., object]:
+        """The solver calls from C, through which no exception passes: the first one is kept."""
+
+        def guarded(*arguments: "float | int | Array[c_double]") -> None:
+            if self._problem is None:
+                try:
+                    call(*arguments)
+                except Exception as error:
+                    self._problem = error
+
+        return guarded
+
+    def step(self, time: float, end: float, write: Callable[[], None] | None) -> None:
+        """From `time` to `end` [s]; `write` puts the inputs that are new.
+
+        Raises CallError, and FMICallException.
+        """
+        if write is not None:
+            self._fmu.enterEventMode()
+            write()
+            self._update(time)
+            self._solver.reset(time)
+        enough = end - SAME * (end - time)
+        while time < enough:
+            event = self._next_event
+            target = end if event is None or event > enough else max(event, time)
+            found = self._advance(time, target)
+            time = found[1]
+            if found[0] or (event is not None and time >= event):
+                self._fmu.enterEventMode()
+                self._update(time)
+                self._solver.reset(time)
+
+    def _advance(self, time: float, target: float) -> tuple[bool, float]:
+        """Whether there is an event, and when."""
+        if target <= time:
+            return True, time
+        try:
+            state_event, _, time = self._solver.step(time, target)
+        except RuntimeError as error:
+            raise self._problem or CallError(str(error)) from error
+        if self._problem is not None:
+            raise self._problem
+        self._fmu.setTime(time)
+        if not self._completes:
+            return bool(state_event), time
+        step_event, ends = self._fmu.completedIntegratorStep()
+        if ends:
+            raise CallError(ASKS_TO_END)
+        return bool(state_event or step_event), time
+
+    def _update(self, time: float) -> None:
+        """The discrete states, until they rest; then on in continuous time."""
+        needed = True
+        while needed:
+            update = self._fmu.updateDiscreteStates if self._is_3 else self._fmu.newDiscreteStates
+            needed, ends, _, _, is_defined, event = update()
+            if ends:
+                raise CallError(ASKS_TO_END)
+            self._next_event = event if is_defined and event > time else None
+        self._fmu.enterContinuousTimeMode()

@@ -1,0 +1,37 @@
+"""How an FMU steps: by any step, or by one of its own."""
+
+from laglab_fmu.errors import FmuFileError
+from laglab_fmu.foreign.file import FmuFile
+
+SAME = 1e-9
+"""Steps that differ by less than this part of them are the same."""
+
+
+def substeps(file: FmuFile, sample_time: float) -> int:
+    """Into how many steps of its own an FMU cuts a sample, where it says that it can do no other.
+
+    Raises FmuFileError: it cannot.
+    """
+    own = own_step(file)
+    if own is None:
+        return 1
+    parts = round(sample_time / own)
+    if parts < 1 or abs(parts * own - sample_time) > SAME * sample_time:
+        raise FmuFileError(
+            f"{file.path}: it steps by {own:g} s and no other: sample_time must be a multiple of "
+            f"that, not {sample_time:g}"
+        )
+    return parts
+
+
+def own_step(file: FmuFile) -> float | None:
+    """[s] The only step that an FMU can do; None: any."""
+    offered = file.description.coSimulation
+    if offered is None:
+        return None
+    if offered.fixedInternalStepSize is not None:
+        return float(offered.fixedInternalStepSize)
+    experiment = file.description.defaultExperiment
+    if offered.canHandleVariableCommunicationStepSize or file.version == 3 or experiment is None:
+        return None
+    return float(experiment.stepSize) if experiment.stepSize else None

@@ -1,0 +1,53 @@
+"""The robots that ship: what each is called, and its table of variables."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from laglab_fmu.others import CAR, OMNI
+from laglab_fmu.variables import MODEL_NAME, VARIABLES, Variable
+
+FLEET_NAME = "Fleet"
+
+
+@dataclass(frozen=True)
+class Model:
+    """One of them."""
+
+    name: str
+    """Of its FMUs, whose model identifier it is, too."""
+    folder: str
+    """Of its C files, in `src/robots`."""
+    description: str
+    variables: Sequence[Variable]
+    has_fleet: bool = False
+
+    @cached_property
+    def reference(self) -> Mapping[str, int]:
+        """Value reference by name."""
+        return {variable.name: number for number, variable in enumerate(self.variables)}
+
+    @property
+    def fmus(self) -> tuple[str, ...]:
+        """Model name and version of FMI."""
+        own = (f"{self.name}2", f"{self.name}3")
+        return (*own, f"{FLEET_NAME}3") if self.has_fleet else own
+
+
+ROBOT = Model(
+    MODEL_NAME,
+    "differential",
+    "A differential-drive robot with wheel and sensor noise",
+    VARIABLES,
+    has_fleet=True,
+)
+MODELS = (
+    ROBOT,
+    Model("Car", "car", "A car-like robot, whose steering lags, with noise", CAR),
+    Model("Omni", "omni", "An omnidirectional robot on three wheels, with noise", OMNI),
+)
+
+
+def model_of(fmu: str) -> Model:
+    """Whose FMU that is."""
+    return next(model for model in MODELS if fmu in model.fmus)

@@ -1,0 +1,144 @@
+"""The other robots that ship: how they move, and that they are FMUs as the first one is."""
+
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.fmi3 import FMU3Slave
+from fmpy.validation import validate_fmu
+
+from laglab_fmu.foreign import FmuFile, ForeignRobot, Value, Wiring
+from laglab_fmu.models import MODELS, model_of
+from laglab_fmu.variables import Kind, Role
+
+TS = 0.01
+OTHERS = ("Car2", "Car3", "Omni2", "Omni3")
+STATES, COMMANDS = ("x", "y", "theta"), ("v_command", "omega_command")
+UNKNOWNS = ("v", "omega", "der(x)", "der(y)", "der(theta)")
+Parameters = dict[str, Value]
+
+
+def driven(
+    path: Path, v: float, omega: float, ticks: int = 100, exchange: bool = False, **told: Value
+) -> list[tuple[float, ...]]:
+    """x, y, theta, v, omega, tick by tick."""
+    outputs = {name: name for name in (*STATES, "v", "omega")}
+    inputs = {"v": "v_command", "omega": "omega_command"}
+    file = FmuFile.read(path)
+    if exchange:
+        file.description.coSimulation = None
+    with ForeignRobot(file, Wiring(inputs, outputs, parameters=told), TS) as robot:
+        return [robot.step((v, omega)) for _ in range(ticks)]
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_fmpy_finds_no_problem(fmus: dict[str, Path], name: str) -> None:
+    assert validate_fmu(str(fmus[name])) == []
+    for variable in fmpy.read_model_description(fmus[name]).modelVariables:
+        assert variable.description
+        if variable.type in ("Real", "Float64"):
+            assert variable.declaredType.displayUnit
+
+
+def test_the_manipulation_toolbox_finds_no_error(fmus: dict[str, Path]) -> None:
+    command = [sys.executable, "-m", "fmu_manipulation_toolbox.cli.fmutool"]
+    done = subprocess.run(
+        [*command, "-input", str(fmus["Car3"]), "-check"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert "seems to be compliant" in done.stdout + done.stderr
+
+
+def test_all_that_ship_are_built(fmus: dict[str, Path]) -> None:
+    assert list(fmus) == [name for model in MODELS for name in model.fmus]
+
+
+@pytest.mark.parametrize("name", ["Car", "Omni"])
+def test_fmi_2_and_3_give_the_same_bits(fmus: dict[str, Path], name: str) -> None:
+    told: Parameters = {"seed": 5, "first_wheel_error": 0.1} if name == "Omni" else {"seed": 5}
+    assert driven(fmus[f"{name}2"], 0.5, 0.3, **told) == driven(fmus[f"{name}3"], 0.5, 0.3, **told)
+
+
+@pytest.mark.parametrize("name", ["Car3", "Omni3"])
+def test_model_exchange_goes_the_same_way(fmus: dict[str, Path], name: str) -> None:
+    told: Parameters = {"seed": 5, "integration": 2}
+    stepped, solved = (driven(fmus[name], 0.5, 0.3, exchange=way, **told) for way in (False, True))
+    assert np.array(solved)[-1, :3] == pytest.approx(np.array(stepped)[-1, :3], abs=5e-4)
+
+
+def test_the_car_s_steering_lags_and_has_an_end(fmus: dict[str, Path]) -> None:
+    told: Parameters = {"noise": False, "steering_time_constant": 0.1, "wheelbase": 0.5}
+    turns = [row[4] for row in driven(fmus["Car3"], 0.5, 0.3, **told)]
+    steering = math.atan(0.5 * 0.3 / 0.5)
+    lagged = [steering * (1 - math.exp(-(k + 1) * TS / 0.1)) for k in range(1, 100)]
+    assert turns[:-1] == pytest.approx([0.5 * math.tan(each) / 0.5 for each in lagged])
+    sharp = driven(fmus["Car3"], 0.5, 5.0, ticks=300, steering_max=0.6, **told)
+    assert sharp[-1][4] == pytest.approx(math.tan(0.6))
+    assert driven(fmus["Car3"], 0.0, 1.0, **told)[-1] == (0.0,) * 5
+    back = driven(fmus["Car3"], -0.5, 0.3, ticks=300, **told)
+    assert back[-1][3:] == pytest.approx((-0.5, 0.3))
+
+
+def test_the_omnidirectional_one_does_as_told_and_slides_on_a_worn_wheel(
+    fmus: dict[str, Path],
+) -> None:
+    x, y, theta, v, omega = driven(fmus["Omni3"], 0.5, 0.0, noise=False)[-1]
+    assert (x, y, theta, v, omega) == pytest.approx((0.5, 0.0, 0.0, 0.5, 0.0), abs=1e-12)
+    assert driven(fmus["Omni3"], 0.0, 0.3, noise=False)[-1][:3] == pytest.approx((0, 0, 0.3))
+    worn = driven(fmus["Omni3"], 0.5, 0.0, ticks=1, noise=False, first_wheel_error=-0.1)[-1]
+    rim = 0.1 * 0.5 * math.sqrt(0.75)  # what the worn wheel lacks
+    assert worn[1] == pytest.approx(TS * rim / 3)
+    assert worn[3] == pytest.approx(0.5 - 2 / 3 * math.sqrt(0.75) * rim)
+    assert worn[4] == pytest.approx(rim / (3 * 0.2))
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("Car3", {"speed_time_constant": 0.2}),
+        ("Car3", {"speed_max": 0.4, "steering_max": 0.1}),
+        ("Omni3", {"motor_time_constant": 0.1, "first_wheel_error": 0.2}),
+        ("Omni3", {"wheel_speed_max": 5.0, "wheel_radius_error": 0.1}),
+    ],
+)
+def test_partial_derivatives_agree_with_differences(
+    fmus: dict[str, Path], extracted: dict[str, Path], name: str, told: dict[str, float]
+) -> None:
+    """By the commands, and at the start by every parameter."""
+    table = [v for v in model_of(name).variables if v.kind is Kind.FLOAT64]
+    parameters = [v.name for v in table if v.role in (Role.PARAMETER, Role.TUNABLE)]
+    knowns = [*COMMANDS, *parameters]
+    values = {v.name: v.start for v in table if v.name in parameters} | told
+    values |= {"v_command": 0.5, "omega_command": 0.3, "theta_start": 0.7}
+    model = fmpy.read_model_description(fmus[name])
+    reference = {variable.name: variable.valueReference for variable in model.modelVariables}
+    made = FMU3Slave(
+        guid=model.guid, modelIdentifier=model.modelName, unzipDirectory=str(extracted[name])
+    )
+    made.instantiate()
+    try:
+        unknowns = [reference[each] for each in UNKNOWNS]
+
+        def at(shifted: str = "", by: float = 0.0) -> np.ndarray:
+            made.reset()
+            for each, value in values.items():
+                made.setFloat64([reference[each]], [value + by * (each == shifted)])
+            made.enterInitializationMode()
+            return np.array(made.getFloat64(unknowns))
+
+        for known in knowns:
+            step = 1e-7 * max(abs(values[known]), 1e-3)
+            if values[known] == 0.0:
+                continue  # at the end of what is allowed, or another kind of robot
+            found = (at(known, step) - at(known, -step)) / (2 * step)
+            at()
+            told_so = made.getDirectionalDerivative(unknowns, [reference[known]], [1.0])
+            np.testing.assert_allclose(told_so, found, rtol=1e-4, atol=1e-6, err_msg=known)
+    finally:
+        made.freeInstance()

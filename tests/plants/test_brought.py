@@ -1,0 +1,156 @@
+"""A robot that somebody brings as a class: it runs in every process, and is watched."""
+
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from laglab.command import main
+from laglab_gateway import read_trace
+
+Laglab = Callable[..., "subprocess.CompletedProcess[str]"]
+PAGE = (Path(__file__).parents[2] / "docs" / "plants.md").read_text("utf-8")
+FAULTY = """
+from ice import Skater
+
+class Raises(Skater):
+    def step(self, v, omega):
+        self.steps = getattr(self, "steps", 0) + 1
+        if self.steps == 7:
+            raise ValueError("no ice left\\nhere")
+        super().step(v, omega)
+
+class Nowhere(Raises):
+    def step(self, v, omega):
+        try:
+            super().step(v, omega)
+        except ValueError:
+            self._at((float("nan"), 0.0, 0.0), v, omega)
+
+class Vague(Raises):
+    def read(self):
+        return super().read() if getattr(self, "steps", 0) < 6 else [1.0, 2.0]
+
+class Unmade(Skater):
+    def __init__(self, *told):
+        raise OSError("no rink")
+
+class Half:
+    def __init__(self, sample_time, start, seed):
+        pass
+
+    def read(self):
+        return None
+"""
+
+
+@pytest.fixture
+def ice(tmp_path: Path) -> Path:
+    """The page's robot, and faulty ones, in the folder where commands run."""
+    (tmp_path / "ice.py").write_text(blocks("python")[0])
+    (tmp_path / "faulty.py").write_text(FAULTY)
+    return tmp_path
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```", PAGE, flags=re.M | re.S)
+
+
+@pytest.fixture
+def laglab(tmp_path: Path) -> Laglab:
+    """The command, as it is installed: its own path does not have the present folder."""
+
+    def call(*arguments: str) -> "subprocess.CompletedProcess[str]":
+        command = [str(Path(sys.executable).parent / "laglab"), *arguments]
+        return subprocess.run(
+            command, cwd=tmp_path, capture_output=True, text=True, timeout=50, check=False
+        )
+
+    return call
+
+
+def test_the_page_s_robot_runs_the_same_by_every_way(ice: Path, laglab: Laglab) -> None:
+    (ice / "own.toml").write_text(blocks("toml")[1])
+    for way in ("inline", "udp"):
+        done = laglab("run", "own.toml", "--duration", "1", "--transport", way, "--out", way)
+        assert done.returncode == 0, done.stderr
+        assert "plant" in (ice / way / "summary.json").read_text()
+    traces = [(ice / way / "trace.csv").read_bytes() for way in ("inline", "udp")]
+    assert traces[0] == traces[1]
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("Raises", "faulty:Raises: tick 6: step: ValueError: no ice left here"),
+        ("Nowhere", "faulty:Nowhere: tick 7: read: x must be a finite number, not nan"),
+        ("Vague", "faulty:Vague: tick 6: read: must give a Reading (x, y, theta, x_meas, "),
+    ],
+)
+def test_what_it_does_wrong_ends_the_run(ice: Path, laglab: Laglab, name: str, said: str) -> None:
+    kind = ("--set", f"plant.kind=faulty:{name}")
+    done = laglab("run", "fig6", *kind, "--transport", "udp" if name == "Raises" else "inline")
+    assert done.returncode == 4
+    assert done.stderr.splitlines()[0].startswith(f"laglab: {said}")
+    assert "Traceback" not in done.stderr
+    assert 5 <= len(read_trace(ice / "runs" / "fig6" / "trace.csv")["tick"]) <= 7
+
+
+@pytest.mark.parametrize(
+    ("kind", "said"),
+    [
+        ("faulty:Unmade", "faulty:Unmade: OSError: no rink"),
+        ("faulty:Half", "faulty:Half: a plant must have step, place, which this has not"),
+        ("faulty:Gone", "faulty:Gone: AttributeError: module 'faulty' has no attribute 'Gone'"),
+        ("nowhere:Robot", "nowhere:Robot: ModuleNotFoundError: No module named 'nowhere'"),
+        ("ice:math", "ice:math: ice:math is no class"),
+        ("skater", "no plant 'skater': take one of robot"),
+    ],
+)
+def test_what_cannot_be_made_is_one_line(
+    ice: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    kind: str,
+    said: str,
+) -> None:
+    monkeypatch.syspath_prepend(str(ice))
+    out = str(ice / "out")
+    with pytest.raises(SystemExit) as ended:
+        main(["run", "fig6", "--set", f"plant.kind={kind}", "--transport", "inline", "--out", out])
+    assert ended.value.code == 2
+    told = capsys.readouterr().err
+    assert told.startswith(f"laglab: {said}")
+    assert told.count("\n") == 1
+
+
+def test_an_installed_one_is_listed(ice: Path) -> None:
+    metadata = ice / "rink-1.2.dist-info"
+    metadata.mkdir()
+    (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: rink\nVersion: 1.2\n")
+    entries = "[laglab.plants]\nskater = ice:Skater\nlost = ice:Lost\n"
+    (metadata / "entry_points.txt").write_text(entries)
+    listed = subprocess.run(
+        [sys.executable, "-m", "laglab", "plants"],
+        cwd=ice,
+        env=os.environ | {"COLUMNS": "200"},
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+    rows = [line.split(maxsplit=3) for line in listed.splitlines()]
+    assert ["robot", "laglab", "differential"] in [row[:3] for row in rows]
+    assert "skater rink 1.2 A unicycle on ice." in " ".join(listed.split())
+    assert "lost rink 1.2 lost: AttributeError" in " ".join(listed.split())
+
+
+def test_it_is_driven_by_the_check(ice: Path, laglab: Laglab) -> None:
+    (ice / "own.toml").write_text(blocks("toml")[1])
+    done = laglab("plant", "check", "own.toml")
+    assert done.returncode == 0, done.stderr
+    assert "yes, twice the same bits" in done.stdout
+    assert "can be placed  yes" in done.stdout

@@ -1,0 +1,97 @@
+"""The other robots that ship, and robots that are not ours in studies."""
+
+from pathlib import Path
+
+import pytest
+
+from laglab import load, run
+from laglab.errors import RefusedError, ScenarioError
+from laglab.runs.plant import open_plant
+from laglab.studies.many import why_one_by_one
+from laglab.studies.sweep.loading import load_study
+from laglab.studies.sweep.plan import planned
+from laglab.studies.sweep.sweeping import swept
+from laglab.studies.workers import Processes
+
+from .building import ROVER_MAP, rover
+
+STUDY = """
+seeds = 2
+[grid]
+"link.command_delay" = [0, 5]
+[scenario]
+duration = 0.3
+noise = true
+[scenario.plant]
+"""
+
+
+def test_the_car_follows_its_circle() -> None:
+    done = run("lab-car")
+    assert done.summary.verdict.startswith("follows its path")
+    assert done.summary.plant == "car"
+
+
+def test_the_omnidirectional_one_comes_to_the_goal() -> None:
+    assert run("lab-omni").summary.converged
+
+
+@pytest.mark.parametrize("kind", ["car", "omni"])
+def test_both_versions_give_the_same_bits_and_seeds_differ(kind: str) -> None:
+    told = {"plant.kind": kind, "duration": 0.3, "noise": True}
+    traces = [
+        run("fig6", told | {"plant.fmi": fmi, "seed": seed}).trace["x_meas"].tolist()
+        for fmi, seed in ((2, 1), (3, 1), (3, 2))
+    ]
+    assert traces[0] == traces[1] != traces[2]
+
+
+def test_put_elsewhere_the_noise_is_another() -> None:
+    scenario = load("lab-car", {"start": [0.0, 0.0, 0.0]})
+    with open_plant(scenario) as opened:
+        before = opened.plant.read()
+        opened.plant.place(0.0, 0.0, 0.0)
+        after = opened.plant.read()
+    assert before[:3] == after[:3] == (0.0, 0.0, 0.0)
+    assert before[3:6] != after[3:6]
+
+
+def test_parameters_that_it_does_not_have_are_told() -> None:
+    with pytest.raises(ScenarioError, match="parameters: robot has none that are set by name"):
+        load("lab", {"plant.parameters.wheelbase": 1.0})
+    with pytest.raises(RefusedError, match=r"no variable 'wheelbas'; did you mean wheelbase"):
+        run("lab-car", {"plant.parameters.wheelbas": 1.0})
+
+
+def study(folder: Path, plant: str) -> Path:
+    (folder / "own.toml").write_text(STUDY + plant)
+    return folder / "own.toml"
+
+
+def test_a_study_of_a_foreign_robot_is_made_one_by_one(tmp_path: Path, fmus: Path) -> None:
+    (tmp_path / "rover.fmu").write_bytes((fmus / "rover.fmu").read_bytes())
+    path = study(tmp_path, f'fmu = "rover.fmu"{ROVER_MAP}')
+    [(how, runs)] = planned(load_study(str(path))).ways.items()
+    assert runs == 4
+    assert str(how) == "one by one: of rover.fmu there is one a run, and no fleet (plant)"
+    with Processes(1) as workers:
+        table = swept(str(path), workers, None, False, 100).table
+    assert table.num_rows == 4
+    assert table["rms_x"].null_count == 0
+
+
+def test_another_fmu_of_that_name_is_another_study(tmp_path: Path, library: Path) -> None:
+    rover(tmp_path / "rover.fmu", library)
+    path = study(tmp_path, f'fmu = "rover.fmu"{ROVER_MAP}')
+    before = [cell.key for cell in load_study(str(path)).cells()]
+    assert before == [cell.key for cell in load_study(str(path)).cells()]
+    rover(tmp_path / "rover.fmu", library, resources=("gain.txt", "more.txt"))
+    after = [cell.key for cell in load_study(str(path)).cells()]
+    assert not set(before) & set(after)
+
+
+@pytest.mark.parametrize("kind", ["car", "omni", "ice:Skater"])
+def test_there_is_no_fleet_of_others(kind: str) -> None:
+    said = f"of {kind} there is one a run, and no fleet (plant)"
+    assert why_one_by_one(load("lab", {"plant.kind": kind})) == said
+    assert why_one_by_one(load("lab")) is None
