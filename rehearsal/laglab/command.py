@@ -17,6 +17,7 @@ from laglab.commands import (
     export,
     figure,
     fmu,
+    link,
     maps,
     protocol,
     replay,
@@ -84,6 +85,7 @@ app.command("controller")(sides.controller)
 app.command("serial")(serial.serial)
 app.add_typer(bench.app, name="bench")
 app.add_typer(fmu.app, name="fmu")
+app.add_typer(link.app, name="link")
 app.add_typer(protocol.app, name="protocol")
 app.command("conform")(protocol.conform)
 

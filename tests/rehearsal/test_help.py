@@ -22,7 +22,7 @@ def said(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> str:
     return capsys.readouterr().out
 
 
-@pytest.mark.parametrize("group", [(), ("bench",), ("fmu",), ("protocol",)])
+@pytest.mark.parametrize("group", [(), ("bench",), ("fmu",), ("link",), ("protocol",)])
 def test_a_group_alone_shows_its_help(
     group: tuple[str, ...], capsys: pytest.CaptureFixture[str]
 ) -> None:

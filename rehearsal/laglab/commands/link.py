@@ -1,0 +1,117 @@
+"""`laglab link`: the link you have, measured."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from laglab.commands.group import group
+from laglab.commands.run import KeyOption
+from laglab.link.errors import LinkPlaceError
+from laglab.link.measured import write_link_log
+from laglab.link.probing import ProbePlan
+from laglab.link.probing import echo as answer
+from laglab.link.probing import probe as measure
+from laglab.link.told import print_measured
+from laglab.progress import counting
+from laglab.results.writable import file_place
+from laglab_protocol import (
+    ROBOT_COMPONENT,
+    ROBOT_SYSTEM,
+    STATION_COMPONENT,
+    STATION_SYSTEM,
+    Codec,
+    Listener,
+    UnsignedLinkError,
+    open_endpoint,
+)
+
+SECOND = 1.0
+
+app = group("The link you have: measured, imported, fitted.")
+
+UrlArgument = Annotated[
+    str,
+    typer.Argument(
+        metavar="URL", help="udpin://HOST:PORT, udpout://HOST:PORT or serial:///dev/ttyX:BAUD."
+    ),
+]
+IntervalOption = Annotated[
+    float,
+    typer.Option("--interval", min=0.001, max=10.0, metavar="S", help="From frame to frame [s]."),
+]
+
+
+def _say(text: str) -> None:
+    Console(stderr=True).print(text, highlight=False, soft_wrap=True, markup=False)
+
+
+@app.command("echo")
+def echo(
+    url: UrlArgument = "udpin://127.0.0.1:14550",
+    key: KeyOption = None,
+    unsigned: Annotated[
+        bool, typer.Option("--unsigned", help="Answer anybody who can reach the endpoint.")
+    ] = False,
+) -> None:
+    """Answer whoever measures the link, at the robot's end, until Ctrl-C."""
+    with Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, key) as codec, open_endpoint(url) as link:
+        if not (link.loopback or key or unsigned):
+            raise UnsignedLinkError(
+                f"{link.name} can be reached from outside, and without a key anybody there can "
+                "have frames sent to others: give --key FILE (laglab protocol keygen makes one), "
+                "or say --unsigned"
+            )
+        _say(f"at {link.name}: waiting for `laglab link probe`; Ctrl-C ends it")
+        answer(Listener(link, codec.receiver), codec, _say)
+
+
+@app.command("probe")
+def probe(
+    url: UrlArgument = "udpout://127.0.0.1:14550",
+    out: Annotated[
+        Path, typer.Option("--out", metavar="FILE", help="What happened to every frame.")
+    ] = Path("link.csv"),
+    duration: Annotated[
+        float, typer.Option(min=0.05, max=86400.0, help="How long it is measured [s].")
+    ] = 10.0,
+    interval: IntervalOption = 0.01,
+    wait: Annotated[
+        float, typer.Option(min=0.1, max=3600.0, help="So long somebody must answer [s].")
+    ] = 3.0,
+    clocks_within: Annotated[
+        float | None,
+        typer.Option(
+            "--clocks-within",
+            min=0.0,
+            metavar="S",
+            help="The clocks of both machines agree within so many seconds (PTP, GPS; 0: it is "
+            "one machine). Then delays are one-way; else half of the shortest round trip is each "
+            "way's.",
+        ),
+    ] = None,
+    key: KeyOption = None,
+) -> None:
+    """Measure the link to `laglab link echo`, from the station's end.
+
+    Frames of the size and at the rate of a run's, both ways, into link.csv.
+    """
+    if url.startswith("udpin"):
+        raise LinkPlaceError(
+            f"{url}: whoever measures calls: give udpout://HOST:PORT here, udpin to the echo"
+        )
+    file_place("--out", out)
+    count = max(1, round(duration / interval))
+    plan = ProbePlan(count, interval, wait, clocks_within)
+    with (
+        Codec(STATION_SYSTEM, STATION_COMPONENT, key) as codec,
+        open_endpoint(url) as link,
+        counting("frame", link.name, count) as told,
+    ):
+        measured = measure(
+            Listener(link, codec.receiver), codec, plan, lambda prober: told(prober.sent), _say
+        )
+    write_link_log(measured, out)
+    print_measured(measured, Console())
+    typer.echo(out)
