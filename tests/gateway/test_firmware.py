@@ -142,7 +142,7 @@ def test_the_link_to_it_is_measured_as_its_readme_says(
     while not (tmp_path / "port").exists():
         time.sleep(0.01)
     start(firmware, tmp_path / "port")
-    told, errors = measuring.communicate(timeout=30)
+    _, errors = measuring.communicate(timeout=30)
     assert measuring.returncode == 0, errors
     rows = [line.split(",") for line in (tmp_path / "link.csv").read_text().splitlines()[1:]]
     assert [row[1] for row in rows if row[0] == "measurement"] == list(map(str, range(50)))

@@ -15,7 +15,7 @@ from laglab.progress import progress_of
 from laglab.results.complete import Way
 from laglab.results.place import place
 from laglab.runs.rehearse import Transport
-from laglab.runs.robot_side import Setup
+from laglab.runs.robot_side import Setup, wrapped_replay
 from laglab.runs.whole import run_into
 from laglab.scenario import Scenario
 
@@ -74,6 +74,8 @@ def run(
         raise ScenarioError("--plant: a real robot does not wait: take --transport udp or serial")
     setup = Setup(plant, key, plant_key=plant_key)
     setup.check()
+    if said := wrapped_replay(scenario):
+        typer.echo(said, err=True)
     way = Way("both", transport, plant or "fmu")
     with shown_live(scenario, way, live, open_) as page:
         directory = place(scenario, out, force)
