@@ -9,13 +9,17 @@ from rich.console import Console
 from laglab.commands.group import group
 from laglab.commands.run import KeyOption
 from laglab.link.errors import LinkPlaceError
+from laglab.link.importing import How, read_link, read_table
+from laglab.link.link_table import FittedLink, link_toml
 from laglab.link.measured import write_link_log
-from laglab.link.probing import ProbePlan
+from laglab.link.probing import ProbePlan, real_sizes
 from laglab.link.probing import echo as answer
 from laglab.link.probing import probe as measure
 from laglab.link.told import print_measured
 from laglab.progress import counting
+from laglab.results.whole import whole_file
 from laglab.results.writable import file_place
+from laglab_gateway import Impairments
 from laglab_protocol import (
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
@@ -23,6 +27,7 @@ from laglab_protocol import (
     STATION_SYSTEM,
     Codec,
     Listener,
+    Sender,
     UnsignedLinkError,
     open_endpoint,
 )
@@ -40,6 +45,16 @@ UrlArgument = Annotated[
 IntervalOption = Annotated[
     float,
     typer.Option("--interval", min=0.001, max=10.0, metavar="S", help="From frame to frame [s]."),
+]
+ClocksOption = Annotated[
+    float | None,
+    typer.Option(
+        "--clocks-within",
+        min=0.0,
+        metavar="S",
+        help="The clocks of both machines agree within so many seconds (PTP, GPS; 0: it is one "
+        "machine). Then delays are one-way; else half of the shortest round trip is each way's.",
+    ),
 ]
 
 
@@ -80,17 +95,7 @@ def probe(
     wait: Annotated[
         float, typer.Option(min=0.1, max=3600.0, help="So long somebody must answer [s].")
     ] = 3.0,
-    clocks_within: Annotated[
-        float | None,
-        typer.Option(
-            "--clocks-within",
-            min=0.0,
-            metavar="S",
-            help="The clocks of both machines agree within so many seconds (PTP, GPS; 0: it is "
-            "one machine). Then delays are one-way; else half of the shortest round trip is each "
-            "way's.",
-        ),
-    ] = None,
+    clocks_within: ClocksOption = None,
     key: KeyOption = None,
 ) -> None:
     """Measure the link to `laglab link echo`, from the station's end.
@@ -114,4 +119,61 @@ def probe(
         )
     write_link_log(measured, out)
     print_measured(measured, Console())
+    typer.echo(out)
+
+
+@app.command("import")
+def import_(
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE",
+            help="ping's output, irtt's JSON (.gz), a mahimahi trace, a table of netem's, a "
+            "robot.tlog, a pcap.",
+        ),
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="FILE", help="link.csv; of a table, link.toml."),
+    ] = None,
+    interval: Annotated[
+        float | None,
+        typer.Option(
+            "--interval",
+            min=0.001,
+            max=10.0,
+            metavar="S",
+            help="Resample to ticks of so long [s]; else each measurement is a tick.",
+        ),
+    ] = None,
+    back: Annotated[
+        Path | None,
+        typer.Option(
+            "--back", metavar="FILE", help="Of a mahimahi trace: the measurements' direction."
+        ),
+    ] = None,
+    clocks_within: ClocksOption = None,
+    mean: Annotated[
+        float | None, typer.Option("--mean", min=0.0, metavar="S", help="Of a netem table [s].")
+    ] = None,
+    spread: Annotated[
+        float | None, typer.Option("--spread", min=0.0, metavar="S", help="Of a netem table [s].")
+    ] = None,
+) -> None:
+    """Make link.csv of what others measured.
+
+    FILE is known by what is in it.
+    """
+    table = read_table(file, mean, spread)
+    out = out or Path("link.csv" if table is None else "link.toml")
+    file_place("--out", out)
+    if table is not None:
+        with whole_file(out) as written:
+            late = Impairments(extra_delay=table)
+            written.write(link_toml(FittedLink(0, 0, late, late)).encode())
+    else:
+        sizes = real_sizes(Sender(ROBOT_SYSTEM, ROBOT_COMPONENT))
+        measured = read_link(file, How(sizes, interval, clocks_within, back))
+        write_link_log(measured, out)
+        print_measured(measured, Console())
     typer.echo(out)

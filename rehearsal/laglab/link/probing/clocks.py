@@ -21,6 +21,12 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
+MOST_DRIFT = 2e-4
+"""Of two clocks against each other: a steeper line is no drift, but too few frames."""
+TINY = 1e-9
+"""[s]"""
+
+
 class Stamps(NamedTuple):
     """Of each frame of one direction."""
 
@@ -103,7 +109,8 @@ class Line(NamedTuple):
 
 def lowest_line(stamps: Stamps) -> Line | None:
     """The line beneath all points that is nearest to them on average: the edge of their lower
-    convex hull that spans their mean time. None without points."""
+    convex hull that spans their mean time; level where that would be steeper than clocks drift.
+    None without points."""
     came = ~np.isnan(stamps.apart)
     if not came.any():
         return None
@@ -112,8 +119,8 @@ def lowest_line(stamps: Stamps) -> Line | None:
     hull = _lower_hull(points.tolist())
     middle = float(points[:, 0].mean())
     for (t0, d0), (t1, d1) in pairwise(hull):
-        if t0 <= middle <= t1 and t1 > t0:
-            return Line(t0, d0, (d1 - d0) / (t1 - t0))
+        if t0 <= middle <= t1 and abs(d1 - d0) <= MOST_DRIFT * (t1 - t0):
+            return Line(t0, d0, (d1 - d0) / max(t1 - t0, TINY))
     return Line(hull[0][0], min(d for _, d in hull), 0.0)
 
 

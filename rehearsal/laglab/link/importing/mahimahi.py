@@ -1,0 +1,79 @@
+"""A trace for mahimahi's mm-link: when 1500 bytes may cross; what a run's frames then wait."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from laglab.link.errors import LinkFileError
+from laglab.link.importing.how import TICK, How
+from laglab.link.measured import Array, Flow, Measured
+
+OPPORTUNITY = 1500
+"""[byte]"""
+LEAST = 10.0
+"""[s] A shorter trace is gone through again until it is as long."""
+NOTE = (
+    "A trace tells how long frames wait for their turn; how long they then travel comes on top: "
+    "set n and m to that."
+)
+
+
+def is_trace(numbers: Sequence[int]) -> bool:
+    """Whether these may be milliseconds, one after the other."""
+    rising = all(later >= earlier for earlier, later in pairwise(numbers))
+    return bool(numbers) and rising and numbers[0] >= 0 and numbers[-1] > 0
+
+
+def read_mahimahi(numbers: Sequence[int], how: How) -> Measured:
+    """Both ways by this trace, or measurements by the one of `how.back`."""
+    interval = how.interval or TICK
+    other = numbers if how.back is None else _numbers_in(how.back)
+    return Measured(
+        _flow(numbers, how.sizes.command, interval),
+        _flow(other, how.sizes.measurement, interval),
+        interval,
+        (NOTE,),
+    )
+
+
+def _numbers_in(path: Path) -> list[int]:
+    try:
+        numbers = [int(word) for word in path.read_text(encoding="ascii").split()]
+    except (OSError, ValueError) as error:
+        raise LinkFileError(f"--back {path}: no mahimahi trace: {error}") from error
+    if not is_trace(numbers):
+        raise LinkFileError(f"--back {path}: no mahimahi trace: milliseconds that rise")
+    return numbers
+
+
+def _flow(numbers: Sequence[int], size: int, interval: float) -> Flow:
+    turns = int(np.ceil(LEAST * 1e3 / numbers[-1]))
+    length = numbers[-1] * max(turns, 1) * 1e-3
+    sent = interval * np.arange(max(1, int(length / interval)), dtype=np.float64)
+    return Flow(sent, waited(numbers, sent, size) - sent, size)
+
+
+def waited(trace: Sequence[int], sent: Array, size: int) -> Array:
+    """When each of these frames has crossed [s].
+
+    An opportunity carries 1500 bytes of what is there by then, pieces of frames too, and is lost
+    where nothing is; the trace begins again at its end.
+    """
+    crossed = np.empty_like(sent)
+    turn, place, room, at = 0, -1, 0, 0.0
+    for i, entered in enumerate(sent):
+        left = size
+        while left > 0:
+            if room == 0 or at < entered - 1e-9:
+                place += 1
+                if place == len(trace):
+                    turn, place = turn + 1, 0
+                at = 1e-3 * (turn * trace[-1] + trace[place])
+                room = OPPORTUNITY if at >= entered - 1e-9 else 0
+                continue
+            taken = min(left, room)
+            left, room = left - taken, room - taken
+        crossed[i] = max(at, entered)
+    return crossed
