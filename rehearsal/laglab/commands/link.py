@@ -8,17 +8,26 @@ from rich.console import Console
 
 from laglab.commands.group import group
 from laglab.commands.run import KeyOption
+from laglab.extras import DRAWING, require
+from laglab.link.advice import suggestions
 from laglab.link.errors import LinkPlaceError
+from laglab.link.figure import draw_fit
+from laglab.link.fitting import fit as fit_link
 from laglab.link.importing import How, read_link, read_table
 from laglab.link.link_table import FittedLink, link_toml
-from laglab.link.measured import write_link_log
+from laglab.link.measured import read_measured, write_link_log
 from laglab.link.probing import ProbePlan, real_sizes
 from laglab.link.probing import echo as answer
 from laglab.link.probing import probe as measure
-from laglab.link.told import print_measured
+from laglab.link.scenario_of import scenario_toml
+from laglab.link.told import choices_table, fit_table, print_measured
 from laglab.progress import counting
+from laglab.results.figures.saving import picture_place, save
 from laglab.results.whole import whole_file
 from laglab.results.writable import file_place
+from laglab.runs.station_side import station_config
+from laglab.scenario import load
+from laglab_control import delay_margin
 from laglab_gateway import Impairments
 from laglab_protocol import (
     ROBOT_COMPONENT,
@@ -31,8 +40,6 @@ from laglab_protocol import (
     UnsignedLinkError,
     open_endpoint,
 )
-
-SECOND = 1.0
 
 app = group("The link you have: measured, imported, fitted.")
 
@@ -70,7 +77,10 @@ def echo(
         bool, typer.Option("--unsigned", help="Answer anybody who can reach the endpoint.")
     ] = False,
 ) -> None:
-    """Answer whoever measures the link, at the robot's end, until Ctrl-C."""
+    """Answer whoever measures the link.
+
+    At the robot's end, until Ctrl-C.
+    """
     with Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, key) as codec, open_endpoint(url) as link:
         if not (link.loopback or key or unsigned):
             raise UnsignedLinkError(
@@ -98,9 +108,10 @@ def probe(
     clocks_within: ClocksOption = None,
     key: KeyOption = None,
 ) -> None:
-    """Measure the link to `laglab link echo`, from the station's end.
+    """Measure the link, into link.csv.
 
-    Frames of the size and at the rate of a run's, both ways, into link.csv.
+    From the station's end, to `laglab link echo` or a robot that knows it: frames of the size and
+    at the rate of a run's, both ways.
     """
     if url.startswith("udpin"):
         raise LinkPlaceError(
@@ -177,3 +188,51 @@ def import_(
         write_link_log(measured, out)
         print_measured(measured, Console())
     typer.echo(out)
+
+
+@app.command("fit")
+def fit(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A link.csv.")] = Path("link.csv"),
+    out: Annotated[
+        Path, typer.Option("--out", metavar="FILE", help="The link as a scenario file.")
+    ] = Path("link.toml"),
+    scenario: Annotated[
+        str,
+        typer.Option(
+            "--scenario", metavar="NAME", help="What is to run on that link: the file holds it all."
+        ),
+    ] = "lab",
+    interval: IntervalOption = 0.01,
+    late: Annotated[
+        float,
+        typer.Option(
+            min=0.0, max=0.5, help="The share of frames that may come too late to be played out."
+        ),
+    ] = 0.01,
+    figure: Annotated[
+        Path | None,
+        typer.Option("--figure", metavar="FILE", help="A picture: PNG, PDF, SVG and others."),
+    ] = None,
+) -> None:
+    """Fit a [link] table to link.csv, suggest bounds.
+
+    How well it does is told; so is what each bound of a play-out would cost.
+    """
+    if figure is not None:
+        require(DRAWING)
+        picture_place(figure)
+    file_place("--out", out)
+    on = load(scenario)
+    found = fit_link(read_measured(file, interval), late)
+    with whole_file(out) as written:
+        written.write(scenario_toml(on, found.link).encode())
+    console = Console()
+    console.print(fit_table(found))
+    margin = delay_margin(station_config(on).law, interval)
+    console.print(choices_table(found, margin))
+    for line in suggestions(found):
+        console.print(line, highlight=False, markup=False)
+    typer.echo(out)
+    if figure is not None:
+        save(draw_fit(found), figure)
+        typer.echo(figure)

@@ -1,15 +1,20 @@
 """What was measured, as a table."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from laglab.link.fitting import Fit, choices
 from laglab.link.measured import Array, Flow, Measured, bursts
 from laglab.tables import plain_table
+from laglab_control import DelayMargin
 
 SHARES = (0.5, 0.9, 0.99)
 NONE = "-"
+NOT_FITTED = ("frames", "size [byte]")
 
 
 def table_of(measured: Measured, title: str = "") -> Table:
@@ -60,3 +65,45 @@ def overtaken(flow: Flow) -> float:
 
 def _ms(delays: Array, share: float) -> str:
     return f"{1e3 * np.quantile(delays, share):.3g}" if len(delays) else NONE
+
+
+def fit_table(fit: Fit) -> Table:
+    """What was measured beside what the fit makes."""
+    table = plain_table("", title="Measured, and what the fitted link does")
+    for direction, _ in fit.measured.flows:
+        table.add_column(f"{direction}s", justify="right")
+        table.add_column("fitted", justify="right")
+    pairs = zip(fit.measured.flows, fit.made.flows, strict=True)
+    columns = [_column(flow) for pair in pairs for _, flow in pair]
+    for name in columns[0]:
+        if name not in NOT_FITTED:
+            table.add_row(Text(name), *(column[name] for column in columns))
+    distances = [cell for each in fit.distances for cell in ("", f"{each:.3g}")]
+    table.add_row("distance of the delays (KS)", *distances)
+    return table
+
+
+def choices_table(fit: Fit, margin: DelayMargin) -> Table:
+    """What each pair of bounds costs."""
+    table = plain_table(
+        title="Play-out: later bounds, fewer frames late, longer delays",
+        caption="* suggested; to the margin: ticks left of the delay margins (approach, hold) that "
+        "the law's loops have where the station does not predict",
+    )
+    for heading in ("", "n", "m", "late [%]", "lost or late [%]", "n + m", "[ms]", "to the margin"):
+        table.add_column(Text(heading), justify="right")
+    for choice in choices(fit.measured):
+        table.add_row(
+            "*" if choice.bounds == fit.bounds.bounds else "",
+            *map(str, choice.bounds),
+            _percents(choice.late),
+            _percents(choice.unused),
+            str(choice.total),
+            f"{1e3 * choice.total * fit.measured.interval:.0f}",
+            " ".join(f"{each - choice.total:+d}" for each in margin if each is not None),
+        )
+    return table
+
+
+def _percents(shares: Sequence[float]) -> str:
+    return ", ".join(f"{100 * share:.2g}" for share in shares)

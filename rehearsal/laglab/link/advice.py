@@ -1,0 +1,21 @@
+"""What to take from a fit, in sentences."""
+
+from collections.abc import Iterator
+
+from laglab.link.fitting import Fit
+
+
+def suggestions(fit: Fit) -> Iterator[str]:
+    """n and m without play-out, bounds with it, and how to rehearse on what was measured."""
+    n, m = fit.usual
+    yield f"Without play-out: n = {n}, m = {m}, what half of the frames take at most."
+    bounds, (late_n, late_m) = fit.bounds.bounds, fit.bounds.late
+    playout = f"{{ command = {bounds.command}, measurement = {bounds.measurement} }}"
+    yield (
+        f"With play-out: link.playout = {playout}: {100 * late_n:.2g} % of the commands and "
+        f"{100 * late_m:.2g} % of the measurements that come are then too late."
+    )
+    yield (
+        "Rehearse on the fitted link: laglab run FILE.toml; on the very frames: "
+        "laglab run SCENARIO -n 0 -m 0 --timeline FILE.csv."
+    )
