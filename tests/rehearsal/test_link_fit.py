@@ -1,7 +1,6 @@
 """A link is fitted: what is made by known numbers gives them back, and figures hold."""
 
 import math
-import subprocess
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -26,7 +25,7 @@ from laglab.link.told import overtaken
 from laglab.scenario import load
 from laglab_gateway import Burst, ExtraDelay, Impairments
 
-Laglab = Callable[..., subprocess.CompletedProcess[str]]
+Said = Callable[..., str]
 TS = 0.01
 NONE = Flow(np.empty(0), np.empty(0), 100)
 UP = Impairments(
@@ -43,6 +42,23 @@ def measured(frames: int = 20_000) -> Measured:
 
 
 MEASURED = measured()
+
+
+@pytest.fixture
+def said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> Said:
+    """What a command says, in a folder of its own and 80 columns; it ends well."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "80")
+
+    def call(*arguments: str) -> str:
+        with pytest.raises(SystemExit) as ended:
+            main(list(arguments))
+        assert ended.value.code == 0
+        return capsys.readouterr().out
+
+    return call
 
 
 def lost_by(burst: Burst, loss: float = 0.0, frames: int = 200_000) -> np.ndarray:
@@ -165,36 +181,26 @@ def test_play_out_stands_in_the_file_where_scenarios_know_it(tmp_path: Path) -> 
     load(str(tmp_path / "link.toml"))
 
 
-def test_fitted_rehearsed_and_replayed(laglab: Laglab, tmp_path: Path) -> None:
+def test_fitted_rehearsed_and_replayed(said: Said, tmp_path: Path) -> None:
     write_link_log(measured(600), tmp_path / "link.csv")
-    fitted = laglab("link", "fit", "--figure", "link.png")
-    assert fitted.returncode == 0, fitted.stderr
-    said = " ".join(fitted.stdout.split())
-    assert "distance of the delays (KS)" in said
-    assert "Without play-out: n = 3, m = 6" in said
-    assert "link.playout = { command = 7, measurement = 7 }" in said
+    told = " ".join(said("link", "fit", "--figure", "link.png").split())
+    assert "distance of the delays (KS)" in told
+    assert "Without play-out: n = 3, m = 6" in told
+    assert "link.playout = { command = 7, measurement = 7 }" in told
     assert (tmp_path / "link.png").read_bytes().startswith(b"\x89PNG")
     inline = ("--transport", "inline", "--duration", "1")
-    run = laglab("run", "link.toml", *inline)
-    assert run.returncode == 0, run.stderr
+    said("run", "link.toml", *inline)
     rehearsed = read_measured(tmp_path / "runs" / "link" / "link.csv", TS)
     assert len(rehearsed.command.delay) == 101
-    replay = ("--timeline", "link.csv", "-n", "0", "-m", "0", "--out", "again")
-    assert laglab("run", "lab", *inline, *replay).returncode == 0
+    said("run", "lab", *inline, "--timeline", "link.csv", "-n", "0", "-m", "0", "--out", "again")
     again = read_measured(tmp_path / "again" / "link.csv", TS)
     np.testing.assert_array_equal(again.command.delay, MEASURED.command.delay[:101].round(7))
 
 
-def test_tables_stay_within_80_columns(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("COLUMNS", "80")
+def test_tables_stay_within_80_columns(said: Said, tmp_path: Path) -> None:
     write_link_log(measured(600), tmp_path / "link.csv")
-    with pytest.raises(SystemExit) as ended:
-        main(["link", "fit", str(tmp_path / "link.csv"), "--out", str(tmp_path / "link.toml")])
-    assert ended.value.code == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert max(map(len, lines[:-1])) <= 80
+    lines = said("link", "fit").splitlines()
+    assert max(map(len, lines)) <= 80
     assert not any("…" in line for line in lines)
 
 

@@ -11,10 +11,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from laglab.command import main
 from laglab.link.measured import bursts, read_measured
-from laglab.link.probing import Clocks, Prober, real_sizes, seen_by_clocks
+from laglab.link.probing import Clocks, Prober, Sizes, real_sizes, seen_by_clocks
 from laglab.link.probing.clocks import Stamps, lowest_line
 from laglab.link.probing.ends import Echo
+from laglab.link.probing.sizes import overload
 from laglab_protocol import NO_PROBE, PROBE_FILLER, Probe, Sender, make_key, open_endpoint
 
 Laglab = Callable[..., subprocess.CompletedProcess[str]]
@@ -128,6 +130,16 @@ def test_an_end_that_hears_nothing_tells_of_nothing_and_is_forgotten() -> None:
     assert echo.say(10**10) is None
 
 
+def test_a_line_that_carries_less_than_a_run_says_is_told() -> None:
+    sizes = Sizes(121, 75)
+    said = overload("serial:///dev/ttyUSB0:57600", sizes, 0.01)
+    assert said is not None
+    assert "57600 baud carry less than the 121000" in said
+    for url in ("serial:///dev/ttyUSB0:230400", "/dev/ttyUSB0,230400", "udpout://1.2.3.4:9"):
+        assert overload(url, sizes, 0.01) is None
+    assert overload("/dev/ttyUSB0,57600", sizes, 0.01) is not None
+
+
 @pytest.fixture
 def echoing(start: Start) -> Callable[..., str]:
     """`laglab link echo` in the background: where it answers."""
@@ -181,19 +193,32 @@ BAD = {
 }
 
 
+def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[object, str]:
+    """The exit code, and the one line that says why."""
+    with pytest.raises(SystemExit) as ended:
+        main(["link", *arguments])
+    (line,) = capsys.readouterr().err.splitlines()
+    return ended.value.code, line
+
+
 @pytest.mark.parametrize("arguments", BAD)
-def test_what_cannot_be_measured_is_one_line(laglab: Laglab, arguments: tuple[str, ...]) -> None:
-    code, said = BAD[arguments]
-    result = laglab("link", "probe", *arguments)
-    assert result.returncode == code
-    assert said in result.stderr
-    assert len(result.stderr.splitlines()) == 1
+def test_what_cannot_be_measured_is_one_line(
+    arguments: tuple[str, ...],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    code, line = refused(capsys, "probe", *arguments)
+    assert code == BAD[arguments][0]
+    assert BAD[arguments][1] in line
+    assert not (tmp_path / "link.csv").exists()
 
 
-def test_strangers_are_not_answered_unless_they_may(laglab: Laglab) -> None:
-    result = laglab("link", "echo", "udpin://0.0.0.0:0")
-    assert result.returncode == 2
-    assert "say --unsigned" in result.stderr
+def test_strangers_are_not_answered_unless_they_may(capsys: pytest.CaptureFixture[str]) -> None:
+    code, line = refused(capsys, "echo", "udpin://0.0.0.0:0")
+    assert code == 2
+    assert "say --unsigned" in line
 
 
 def test_a_missing_key_is_named(

@@ -11,7 +11,7 @@ from laglab.link.measured import Flow, Measured, bursts
 from laglab.link.probing.clock import WallClock
 from laglab.link.probing.clocks import seen_by_clocks
 from laglab.link.probing.ends import Prober
-from laglab.link.probing.sizes import Sizes, filler_for, real_sizes
+from laglab.link.probing.sizes import Sizes, filler_for, overload, real_sizes
 from laglab_protocol import PROBE_LAGS, ROBOT_SYSTEM, Codec, Listener, Probe, Refusals
 
 LEAST_ASKED = 0.02
@@ -73,6 +73,8 @@ def probe(
     """
     sender = codec.sender
     sizes = real_sizes(sender)
+    if said := overload(link.link.name, sizes, plan.interval):
+        tell(f"warning: {said}")
     filler = filler_for(sender, sizes.command)
     interval_us = round(plan.interval * 1e6)
     talk = _Talk(link, codec, tell)

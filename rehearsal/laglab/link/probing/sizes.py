@@ -1,5 +1,6 @@
 """How long what a tick sends is, and probes as long as that."""
 
+import re
 from typing import NamedTuple
 
 from laglab_protocol import (
@@ -19,6 +20,9 @@ from laglab_protocol import (
 
 TICK = 1000
 """What is said at this tick is as long as at most others: small numbers travel in fewer bytes."""
+BAUD = re.compile(r"^(?:serial:|/).*[:,](\d+)$")
+BITS_PER_BYTE = 10
+"""8N1: a start bit, eight of data, a stop bit."""
 NONE = (NO_PROBE,) * len(PROBE_LAGS)
 NEVER = (0,) * len(PROBE_LAGS)
 SAID_BY_THE_ROBOT: tuple[Message, ...] = (
@@ -56,3 +60,16 @@ def filler_for(sender: Sender, size: int) -> tuple[int, ...]:
 
 def _ones(count: int) -> tuple[int, ...]:
     return (1,) * count + (0,) * (PROBE_FILLER - count)
+
+
+def overload(url: str, sizes: Sizes, interval: float) -> str | None:
+    """In a line, that a serial port carries less than such frames are; None where it carries
+    them, or is no serial port."""
+    match = BAUD.search(url)
+    fullest = max(sizes) * BITS_PER_BYTE / interval
+    if match is None or fullest <= int(match[1]):
+        return None
+    return (
+        f"{match[1]} baud carry less than the {fullest:.0f} that frames of {max(sizes)} bytes take "
+        f"every {1e3 * interval:g} ms: they will wait longer and longer, as a run's would"
+    )
