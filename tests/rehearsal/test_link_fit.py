@@ -192,6 +192,9 @@ def test_fitted_rehearsed_and_replayed(said: Said, tmp_path: Path) -> None:
     said("run", "link.toml", *inline)
     rehearsed = read_measured(tmp_path / "runs" / "link" / "link.csv", TS)
     assert len(rehearsed.command.delay) == 101
+    said("link", "fit", "runs/link/link.csv", "-n", "2", "-m", "4", "--out", "2.toml")
+    link = load("2.toml").link
+    assert (link.command_delay, link.measurement_delay) == (2, 4)
     said("run", "lab", *inline, "--timeline", "link.csv", "-n", "0", "-m", "0", "--out", "again")
     again = read_measured(tmp_path / "again" / "link.csv", TS)
     np.testing.assert_array_equal(again.command.delay, MEASURED.command.delay[:101].round(7))

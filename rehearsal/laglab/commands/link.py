@@ -203,6 +203,10 @@ def fit(
         ),
     ] = "lab",
     interval: IntervalOption = 0.01,
+    n: Annotated[
+        int, typer.Option("-n", min=0, help="The fixed delay that a run's link.csv leaves out.")
+    ] = 0,
+    m: Annotated[int, typer.Option("-m", min=0, help="The same of measurements.")] = 0,
     late: Annotated[
         float,
         typer.Option(
@@ -223,7 +227,7 @@ def fit(
         picture_place(figure)
     file_place("--out", out)
     on = load(scenario)
-    found = fit_link(read_measured(file, interval), late)
+    found = fit_link(read_measured(file, interval, (n, m)), late)
     with whole_file(out) as written:
         written.write(scenario_toml(on, found.link).encode())
     console = Console()

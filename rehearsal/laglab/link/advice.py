@@ -7,6 +7,10 @@ from laglab.link.fitting import Fit
 
 def suggestions(fit: Fit) -> Iterator[str]:
     """n and m without play-out, bounds with it, and how to rehearse on what was measured."""
+    yield (
+        "* suggested; to the margin: ticks left of the delay margins, on the way to the goal and "
+        "at it, that the law has where the station does not predict."
+    )
     n, m = fit.usual
     yield f"Without play-out: n = {n}, m = {m}, what half of the frames take at most."
     bounds, (late_n, late_m) = fit.bounds.bounds, fit.bounds.late

@@ -23,6 +23,8 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 DELIVERED, LOST = "delivered", "lost"
+CAME = (DELIVERED, "late")
+"""By the link: what was too late to be played out came all the same."""
 DIRECTIONS: tuple[Direction, Direction] = ("command", "measurement")
 
 
@@ -91,27 +93,31 @@ def write_link_log(measured: Measured, path: Path) -> None:
         file.write(text.getvalue().encode())
 
 
-def read_measured(path: Path, interval: float) -> Measured:
+def read_measured(path: Path, interval: float, fixed: tuple[int, int] = (0, 0)) -> Measured:
     """A link.csv, of a measurement or of a run, a tick every `interval` [s].
 
-    Of several frames or copies in one tick the first that came counts. Raises LinkFileError.
+    `fixed` are the delays [ticks] that it leaves out, command and measurement: a run's n and m. Of
+    several frames or copies in one tick the first that came counts. Raises LinkFileError.
     """
     try:
-        flows = [_flow(read_link_log(path, name), interval) for name in DIRECTIONS]
+        command, measurement = (
+            _flow(read_link_log(path, name), interval, delay)
+            for name, delay in zip(DIRECTIONS, fixed, strict=True)
+        )
     except TimelineError as error:
         raise LinkFileError(str(error)) from error
-    if not any(len(flow.delay) for flow in flows):
+    if not (len(command.delay) or len(measurement.delay)):
         raise LinkFileError(f"{path}: no frames in it: an ideal link leaves no trace")
-    return Measured(flows[0], flows[1], interval)
+    return Measured(command, measurement, interval)
 
 
-def _flow(rows: list[LinkRow], interval: float) -> Flow:
+def _flow(rows: list[LinkRow], interval: float, fixed: int) -> Flow:
     if not rows:
         return Flow(np.empty(0), np.empty(0), 0)
     first = rows[0].tick
     delay = np.full(max(row.tick for row in rows) - first + 1, np.nan)
     for row in reversed(rows):
-        if row.fate == DELIVERED and row.tick >= first:
-            delay[row.tick - first] = row.extra
+        if row.fate in CAME and row.tick >= first:
+            delay[row.tick - first] = row.extra + fixed * interval
     sent = interval * np.arange(len(delay), dtype=np.float64)
     return Flow(sent, delay, max(row.size for row in rows))

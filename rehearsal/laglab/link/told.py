@@ -85,11 +85,7 @@ def fit_table(fit: Fit) -> Table:
 
 def choices_table(fit: Fit, margin: DelayMargin) -> Table:
     """What each pair of bounds costs."""
-    table = plain_table(
-        title="Play-out: later bounds, fewer frames late, longer delays",
-        caption="* suggested; to the margin: ticks left of the delay margins (approach, hold) that "
-        "the law's loops have where the station does not predict",
-    )
+    table = plain_table(title="Play-out: later bounds, fewer frames late, longer delays")
     for heading in ("", "n", "m", "late [%]", "lost or late [%]", "n + m", "[ms]", "to the margin"):
         table.add_column(Text(heading), justify="right")
     for choice in choices(fit.measured):
