@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from laglab.command import main
+from laglab.link.advice import suggestions
 from laglab.link.fitting import (
     choices,
     delay_in_ticks,
@@ -134,6 +135,14 @@ def test_the_fitted_link_does_what_was_measured() -> None:
         for share in (0.5, 0.9, 0.99):
             at = [np.quantile(flow.delivered, share) for flow in (was, made)]
             assert at[1] == pytest.approx(at[0], rel=0.05)
+
+
+def test_a_poor_fit_is_told() -> None:
+    drift = 0.02 + 0.02 * np.arange(900.0) / 900  # one slow rise: no stationary link does that
+    found = fit(Measured(Flow(TS * np.arange(900.0), drift, 9), NONE, TS), 0.01)
+    assert ("a poor one" in " ".join(suggestions(found))) == (max(found.distances) > 0.1)
+    assert max(found.distances) > 0.03
+    assert "a poor one" not in " ".join(suggestions(fit(MEASURED, 0.01)))
 
 
 def test_bounds_are_the_least_that_keep_their_word() -> None:

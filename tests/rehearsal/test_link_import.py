@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from laglab.command import main
+from laglab.link.errors import LinkFileError
 from laglab.link.importing import How, read_link, read_table
 from laglab.link.importing.mahimahi import waited
 from laglab.link.measured import Measured, read_measured
@@ -156,6 +157,15 @@ def test_each_direction_may_have_a_trace_of_its_own(tmp_path: Path) -> None:
     measured = imported(tmp_path, "20\n40\n", HOW._replace(back=tmp_path / "down"))
     assert measured.command.delay[1] == pytest.approx(0.01)
     assert np.abs(measured.measurement.delay[1:]).max() < 1e-9
+
+
+@pytest.mark.parametrize("text", [None, "soon", "3\n2\n"])
+def test_a_bad_trace_for_the_way_back_is_named(tmp_path: Path, text: str | None) -> None:
+    back = tmp_path / "down"
+    if text is not None:
+        back.write_text(text)
+    with pytest.raises(LinkFileError, match=r"--back .*down: no mahimahi trace"):
+        imported(tmp_path, "20\n", HOW._replace(back=back))
 
 
 SAID: Sequence[tuple[float, int, tuple[Message, ...]]] = [

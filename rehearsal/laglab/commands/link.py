@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from laglab.commands.figure import WidthOption
 from laglab.commands.group import group
 from laglab.commands.run import KeyOption
 from laglab.extras import DRAWING, require
@@ -217,6 +218,7 @@ def fit(
         Path | None,
         typer.Option("--figure", metavar="FILE", help="A picture: PNG, PDF, SVG and others."),
     ] = None,
+    width: WidthOption = "two",
 ) -> None:
     """Fit a [link] table to link.csv, suggest bounds.
 
@@ -238,5 +240,5 @@ def fit(
         console.print(line, highlight=False, markup=False)
     typer.echo(out)
     if figure is not None:
-        save(draw_fit(found), figure)
+        save(draw_fit(found, width), figure)
         typer.echo(figure)

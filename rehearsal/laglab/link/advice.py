@@ -4,6 +4,9 @@ from collections.abc import Iterator
 
 from laglab.link.fitting import Fit
 
+FAR = 0.1
+"""Kolmogorov and Smirnov's distance of a fit that is none."""
+
 
 def suggestions(fit: Fit) -> Iterator[str]:
     """n and m without play-out, bounds with it, and how to rehearse on what was measured."""
@@ -19,6 +22,11 @@ def suggestions(fit: Fit) -> Iterator[str]:
         f"With play-out: link.playout = {playout}: {100 * late_n:.2g} % of the commands and "
         f"{100 * late_m:.2g} % of the measurements that come are then too late."
     )
+    if max(fit.distances) > FAR:
+        yield (
+            f"The fit is a poor one: its delays are {max(fit.distances):.2g} from those measured, "
+            "which come in an order that no such link has: rather replay them."
+        )
     yield (
         "Rehearse on the fitted link: laglab run FILE.toml; on the very frames: "
         "laglab run SCENARIO -n 0 -m 0 --timeline FILE.csv."
