@@ -21,7 +21,7 @@ from laglab.link.fitting import (
     suggested,
 )
 from laglab.link.link_table import Bounds, FittedLink, link_toml
-from laglab.link.measured import Flow, Measured, bursts, read_measured, write_link_log
+from laglab.link.measured import Flow, MeasuredLink, bursts, read_measured, write_link_log
 from laglab.link.told import overtaken
 from laglab.scenario import load
 from laglab_gateway import Burst, ExtraDelay, Impairments
@@ -36,10 +36,10 @@ UP = Impairments(
 DOWN = Impairments(ExtraDelay("normal", 0.03, 0.004), loss=0.02)
 
 
-def measured(frames: int = 20_000) -> Measured:
+def measured(frames: int = 20_000) -> MeasuredLink:
     """As if both had been probed; the fixed delays are 2.3 and 3 ticks."""
     flows = (simulated(UP, 0.023, NONE, TS), simulated(DOWN, 0.03, NONE, TS))
-    return Measured(*(Flow(f.sent[:frames], f.delay[:frames], f.size) for f in flows), TS)
+    return MeasuredLink(*(Flow(f.sent[:frames], f.delay[:frames], f.size) for f in flows), TS)
 
 
 MEASURED = measured()
@@ -139,7 +139,7 @@ def test_the_fitted_link_does_what_was_measured() -> None:
 
 def test_a_poor_fit_is_told() -> None:
     drift = 0.02 + 0.02 * np.arange(900.0) / 900  # one slow rise: no stationary link does that
-    found = fit(Measured(Flow(TS * np.arange(900.0), drift, 9), NONE, TS), 0.01)
+    found = fit(MeasuredLink(Flow(TS * np.arange(900.0), drift, 9), NONE, TS), 0.01)
     assert ("a poor one" in " ".join(suggestions(found))) == (max(found.distances) > 0.1)
     assert max(found.distances) > 0.03
     assert "a poor one" not in " ".join(suggestions(fit(MEASURED, 0.01)))
@@ -240,9 +240,9 @@ def test_what_cannot_be_fitted_is_one_line(
 
 def test_one_direction_alone_can_be_fitted() -> None:
     flow = Flow(TS * np.arange(50.0), np.full(50, 0.012), 75)
-    found = fit(Measured(NONE, flow, TS), 0.01)
+    found = fit(MeasuredLink(NONE, flow, TS), 0.01)
     assert found.link == FittedLink(
         0, 1, Impairments(), Impairments(ExtraDelay("constant", 0.002)), Bounds(0, 2)
     )
-    dead = fit(Measured(Flow(flow.sent, np.full(50, math.nan), 75), flow, TS), 0.01)
+    dead = fit(MeasuredLink(Flow(flow.sent, np.full(50, math.nan), 75), flow, TS), 0.01)
     assert dead.link.command == Impairments(loss=1.0)

@@ -15,7 +15,7 @@ from laglab.command import main
 from laglab.link.errors import LinkFileError
 from laglab.link.importing import How, read_link, read_table
 from laglab.link.importing.mahimahi import waited
-from laglab.link.measured import Measured, read_measured
+from laglab.link.measured import MeasuredLink, read_measured
 from laglab.link.probing import Sizes
 from laglab.scenario import load
 from laglab_protocol import Command, Measurement, Message, Sender, Tick, tlog_record
@@ -61,7 +61,7 @@ Request timed out.
 """
 
 
-def imported(tmp_path: Path, data: str | bytes, how: How = HOW) -> Measured:
+def imported(tmp_path: Path, data: str | bytes, how: How = HOW) -> MeasuredLink:
     path = tmp_path / "measured"
     path.write_bytes(data.encode() if isinstance(data, str) else data)
     return read_link(path, how)
@@ -98,11 +98,11 @@ def trip(number: int, lost: str, ahead_ns: int, delays: tuple[int, int]) -> dict
     """As irtt writes it, by clocks of which the server's is ahead."""
     up, down = delays
     there = {"delay": {"send": up + ahead_ns, "receive": down - ahead_ns, "rtt": up + down}}
-    stamps = {"send": {"wall": 17 * 10**17, "monotonic": number * 20_000_000}}
+    times = {"send": {"wall": 17 * 10**17, "monotonic": number * 20_000_000}}
     return {
         "seqno": number,
         "lost": lost,
-        "timestamps": {"client": stamps},
+        "timestamps": {"client": times},
         **(there if lost == "false" else {"delay": {}}),
     }
 
@@ -182,7 +182,7 @@ SAID: Sequence[tuple[float, int, tuple[Message, ...]]] = [
 and after tick 3 the station is gone."""
 
 
-def checked(measured: Measured) -> None:
+def checked(measured: MeasuredLink) -> None:
     np.testing.assert_allclose(measured.command.delay, [0.004, 0.0075, np.nan, 0.002], atol=1e-7)
     np.testing.assert_allclose(measured.command.sent, [0.0, 0.01, 0.02, 0.03], atol=1e-7)
     assert measured.interval == pytest.approx(0.01)

@@ -14,7 +14,7 @@ import pytest
 from laglab.command import main
 from laglab.link.measured import bursts, read_measured
 from laglab.link.probing import Clocks, Prober, Sizes, real_sizes, seen_by_clocks
-from laglab.link.probing.clocks import Stamps, lowest_line
+from laglab.link.probing.clocks import ClockTimes, lowest_line
 from laglab.link.probing.ends import Echo
 from laglab.link.probing.sizes import overload
 from laglab_protocol import NO_PROBE, PROBE_FILLER, Probe, Sender, make_key, open_endpoint
@@ -50,7 +50,7 @@ def crossed(
             if (took := down(answer.sequence)) is not None:
                 heapq.heappush(flying, (now + took, answer.sequence, False, answer))
         now += 500_000
-    return seen_by_clocks(*prober.stamps(), None)
+    return seen_by_clocks(*prober.times(), None)
 
 
 def test_every_frame_is_accounted_for_though_some_are_lost_each_way() -> None:
@@ -86,27 +86,27 @@ def test_clocks_that_drift_are_taken_apart() -> None:
     jitter = rng.exponential(0.004, (2, 6000))
     ahead = -3.0 + 80e-6 * sent  # the second clock gains 5 ms in a minute
     seen = seen_by_clocks(
-        Stamps(sent, 0.02 + jitter[0] + ahead), Stamps(sent, 0.02 + jitter[1] - ahead), None
+        ClockTimes(sent, 0.02 + jitter[0] + ahead), ClockTimes(sent, 0.02 + jitter[1] - ahead), None
     )
     np.testing.assert_allclose(seen.ours, 0.02 + jitter[0], atol=1e-4)
     np.testing.assert_allclose(seen.theirs, 0.02 + jitter[1], atol=1e-4)
 
 
 def test_clocks_that_agree_give_one_way_delays_and_those_that_do_not_are_found_out() -> None:
-    there = Stamps(np.array([0.0, 0.01]), np.array([0.003, np.nan]))
-    back = Stamps(np.array([0.0, 0.01]), np.array([0.009, 0.011]))
+    there = ClockTimes(np.array([0.0, 0.01]), np.array([0.003, np.nan]))
+    back = ClockTimes(np.array([0.0, 0.01]), np.array([0.009, 0.011]))
     seen = seen_by_clocks(there, back, 0.001)
     np.testing.assert_array_equal(seen.ours, [0.003, np.nan])
     np.testing.assert_array_equal(seen.theirs, [0.009, 0.011])
     assert "one-way" in seen.note
-    off = Stamps(there.sent, there.apart - 0.005)
+    off = ClockTimes(there.sent, there.apart - 0.005)
     found = seen_by_clocks(off, back, 0.001)
     assert "a frame came 2 ms before it was sent" in found.note
     np.testing.assert_allclose(found.ours[0], 0.0035)
 
 
 def test_what_nothing_came_of_has_no_delay() -> None:
-    nothing, back = (Stamps.of([0, 10], [None, None]), Stamps.of([0, 10], [5, 20]))
+    nothing, back = (ClockTimes.of([0, 10], [None, None]), ClockTimes.of([0, 10], [5, 20]))
     assert lowest_line(nothing) is None
     assert np.isnan(seen_by_clocks(nothing, back, None).theirs).all()
 

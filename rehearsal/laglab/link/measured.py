@@ -51,7 +51,7 @@ class Flow:
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredLink:
     """Both directions of a link, a frame a tick, and what is to be said of the figures."""
 
     command: Flow
@@ -72,7 +72,7 @@ def bursts(lost: Flags) -> list[int]:
     return [int(length) for length in edges[1::2] - edges[::2]]
 
 
-def rows_of(measured: Measured) -> Iterator[LinkRow]:
+def rows_of(measured: MeasuredLink) -> Iterator[LinkRow]:
     """As a run records them: by tick. The delay is all of it, so they are for n = m = 0."""
     flows = measured.flows
     for tick in range(max(len(flow.delay) for _, flow in flows)):
@@ -83,7 +83,7 @@ def rows_of(measured: Measured) -> Iterator[LinkRow]:
                 yield LinkRow(direction, tick, 0, 0, flow.size, LOST if lost else DELIVERED, extra)
 
 
-def write_link_log(measured: Measured, path: Path) -> None:
+def write_link_log(measured: MeasuredLink, path: Path) -> None:
     """Write `path`, whole or not at all. Raises ResultsError."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
@@ -93,7 +93,7 @@ def write_link_log(measured: Measured, path: Path) -> None:
         file.write(text.getvalue().encode())
 
 
-def read_measured(path: Path, interval: float, fixed: tuple[int, int] = (0, 0)) -> Measured:
+def read_measured(path: Path, interval: float, fixed: tuple[int, int] = (0, 0)) -> MeasuredLink:
     """A link.csv, of a measurement or of a run, a tick every `interval` [s].
 
     `fixed` are the delays [ticks] that it leaves out, command and measurement: a run's n and m. Of
@@ -108,7 +108,7 @@ def read_measured(path: Path, interval: float, fixed: tuple[int, int] = (0, 0)) 
         raise LinkFileError(str(error)) from error
     if not (len(command.delay) or len(measurement.delay)):
         raise LinkFileError(f"{path}: no frames in it: an ideal link leaves no trace")
-    return Measured(command, measurement, interval)
+    return MeasuredLink(command, measurement, interval)
 
 
 def _flow(rows: list[LinkRow], interval: float, fixed: int) -> Flow:

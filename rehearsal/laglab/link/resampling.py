@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from laglab.link.measured import Array, Flags, Flow, Measured
+from laglab.link.measured import Array, Flags, Flow, MeasuredLink
 
 
 def known_everywhere(delay: Array, lost: Flags) -> Array:
@@ -20,7 +20,7 @@ def known_everywhere(delay: Array, lost: Flags) -> Array:
     return np.where(lost, np.nan, filled)
 
 
-def resampled(measured: Measured, interval: float) -> Measured:
+def resampled(measured: MeasuredLink, interval: float) -> MeasuredLink:
     """A frame every `interval` [s]: between two measurements the delay goes in a straight line, and
     what is nearer to a lost one is lost."""
     notes = measured.notes

@@ -8,7 +8,7 @@ from rich.table import Table
 from rich.text import Text
 
 from laglab.link.fitting import Fit, choices
-from laglab.link.measured import Array, Flow, Measured, bursts
+from laglab.link.measured import Array, Flow, MeasuredLink, bursts
 from laglab.tables import plain_table
 from laglab_control import DelayMargin
 
@@ -17,7 +17,7 @@ NONE = "-"
 NOT_FITTED = ("frames", "size [byte]")
 
 
-def table_of(measured: Measured, title: str = "") -> Table:
+def table_of(measured: MeasuredLink, title: str = "") -> Table:
     """A column each way: frames, losses, order, and the delays' quantiles."""
     seconds = measured.interval * max(len(flow.delay) for _, flow in measured.flows)
     heading = title or f"A frame each way every {1e3 * measured.interval:g} ms, {seconds:.3g} s"
@@ -30,7 +30,7 @@ def table_of(measured: Measured, title: str = "") -> Table:
     return table
 
 
-def print_measured(measured: Measured, console: Console, title: str = "") -> None:
+def print_measured(measured: MeasuredLink, console: Console, title: str = "") -> None:
     """The table, and what is to be said of the figures."""
     console.print(table_of(measured, title))
     for note in measured.notes:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab.link.link_table import Bounds
-from laglab.link.measured import Flow, Measured
+from laglab.link.measured import Flow, MeasuredLink
 
 ROUNDING = 1e-6
 """[ticks] What comes this little after a tick counts at it: a clock tells no finer."""
@@ -43,7 +43,7 @@ def bound_for(flow: Flow, interval: float, late: float) -> int:
     return int(ticks[max(on_time, 1) - 1])
 
 
-def _choice(measured: Measured, bounds: Bounds) -> Choice:
+def _choice(measured: MeasuredLink, bounds: Bounds) -> Choice:
     late, unused = [], []
     for (_, flow), bound in zip(measured.flows, bounds, strict=True):
         ticks = delay_in_ticks(flow, measured.interval)
@@ -53,13 +53,13 @@ def _choice(measured: Measured, bounds: Bounds) -> Choice:
     return Choice(bounds, (late[0], late[1]), (unused[0], unused[1]))
 
 
-def suggested(measured: Measured, late: float) -> Choice:
+def suggested(measured: MeasuredLink, late: float) -> Choice:
     """The least bounds with which no more than such a share is late."""
     command, measurement = (bound_for(flow, measured.interval, late) for _, flow in measured.flows)
     return _choice(measured, Bounds(command, measurement))
 
 
-def choices(measured: Measured) -> list[Choice]:
+def choices(measured: MeasuredLink) -> list[Choice]:
     """Some worth a thought, from the shortest delay to nothing late; each pair once."""
     found = {each.bounds: each for each in (suggested(measured, late) for late in LATE)}
     return list(found.values())

@@ -10,16 +10,16 @@ from laglab.link.fitting.delays import fit_delays
 from laglab.link.fitting.goodness import distance, simulated
 from laglab.link.fitting.losses import fit_losses
 from laglab.link.link_table import FittedLink
-from laglab.link.measured import Flow, Measured
+from laglab.link.measured import Flow, MeasuredLink
 from laglab_gateway import Impairments
 
 
 class Fit(NamedTuple):
     """A link fitted to what was measured."""
 
-    measured: Measured
+    measured: MeasuredLink
     link: FittedLink
-    made: Measured
+    made: MeasuredLink
     """What the fitted link makes of frames of the same size and rate."""
     distances: tuple[float, float]
     """Kolmogorov and Smirnov's, between the delays measured and made: commands, measurements."""
@@ -29,14 +29,14 @@ class Fit(NamedTuple):
     """What is suggested to play out by."""
 
 
-def fit(measured: Measured, late: float) -> Fit:
+def fit(measured: MeasuredLink, late: float) -> Fit:
     """The fixed delay is what the fastest frame took, in whole ticks; what is beyond it scatters.
 
     `late` is the share that may come after the bounds that are suggested.
     """
     interval = measured.interval
     (n, command), (m, measurement) = (_fitted(flow, interval) for _, flow in measured.flows)
-    made = Measured(
+    made = MeasuredLink(
         simulated(command, n * interval, measured.command, interval),
         simulated(measurement, m * interval, measured.measurement, interval),
         interval,

@@ -9,7 +9,7 @@ import numpy as np
 from laglab.extras import CAPTURES, require
 from laglab.link.errors import LinkFileError
 from laglab.link.importing.how import NOT_KNOWN_WHICH, How, halves
-from laglab.link.measured import Flow, Measured
+from laglab.link.measured import Flow, MeasuredLink
 from laglab.link.resampling import known_everywhere
 from laglab_protocol import Command, Frame, Tick, TlogError, decode, read_tlog
 
@@ -21,7 +21,7 @@ class Heard(NamedTuple):
     frame: Frame
 
 
-def read_log(path: Path, how: How) -> Measured:
+def read_log(path: Path, how: How) -> MeasuredLink:
     """A robot.tlog. Raises LinkFileError."""
     try:
         heard = [Heard(time_us * 1e-6, frame) for time_us, frame in read_tlog(path)]
@@ -30,7 +30,7 @@ def read_log(path: Path, how: How) -> Measured:
     return answers(heard, how, str(path))
 
 
-def read_capture(path: Path, how: How) -> Measured:
+def read_capture(path: Path, how: How) -> MeasuredLink:
     """A pcap or pcapng. Raises LinkFileError, MissingExtraError."""
     require(CAPTURES)
     from laglab.link.importing.captures import datagrams
@@ -53,7 +53,7 @@ def _frames_of(payload: bytes) -> Iterable[Frame]:
             place += 1
 
 
-def answers(heard: Iterable[Heard], how: How, name: str) -> Measured:
+def answers(heard: Iterable[Heard], how: How, name: str) -> MeasuredLink:
     """From each tick's first LAGLAB_TICK to its first LAGLAB_COMMAND, by halves."""
     asked: dict[int, float] = {}
     answered: dict[int, float] = {}
@@ -79,7 +79,7 @@ def answers(heard: Iterable[Heard], how: How, name: str) -> Measured:
     notes += [NOT_KNOWN_WHICH] if lost.any() else []
     if np.allclose(took[~lost] / interval, np.round(took[~lost] / interval), atol=1e-3):
         notes.append("Its times are whole ticks: nothing finer is known, and within a tick is 0.")
-    return Measured(
+    return MeasuredLink(
         Flow(sent - sent[0], took / 2, how.sizes.command),
         Flow(
             sent - sent[0], known_everywhere(took, np.zeros_like(lost)) / 2, how.sizes.measurement

@@ -9,16 +9,16 @@ import numpy as np
 
 from laglab.link.errors import LinkFileError
 from laglab.link.importing.how import NOT_KNOWN_WHICH, How, halves
-from laglab.link.measured import Array, Flow, Measured
+from laglab.link.measured import Array, Flow, MeasuredLink
 from laglab.link.probing import seen_by_clocks
-from laglab.link.probing.clocks import Stamps
+from laglab.link.probing.clocks import ClockTimes
 from laglab.link.resampling import known_everywhere
 
 UP, DOWN, EITHER = "true_up", "true_down", "true"
 Json = Mapping[str, object]
 
 
-def read_irtt(text: bytes, how: How, name: str) -> Measured:
+def read_irtt(text: bytes, how: How, name: str) -> MeasuredLink:
     """One-way delays where the server stamped its times, else halves. Raises LinkFileError."""
     try:
         whole = json.loads(text)
@@ -38,15 +38,19 @@ def read_irtt(text: bytes, how: How, name: str) -> Measured:
     return _measured((sent - sent[0]) * 1e-9, lost, (there, back, trip), how)
 
 
-def _measured(sent: Array, lost: Array, delays: tuple[Array, Array, Array], how: How) -> Measured:
+def _measured(
+    sent: Array, lost: Array, delays: tuple[Array, Array, Array], how: How
+) -> MeasuredLink:
     there, back, trip = delays
     up, down = np.isin(lost, (UP, EITHER)), lost == DOWN
     if np.isnan(there).all() or np.isnan(back).all():
         ours, theirs, note = trip / 2, trip / 2, halves("irtt, without the server's times")
     else:
-        ours, theirs, note = seen_by_clocks(Stamps(sent, there), Stamps(sent, back), how.within)
+        ours, theirs, note = seen_by_clocks(
+            ClockTimes(sent, there), ClockTimes(sent, back), how.within
+        )
     interval = float(np.median(np.diff(sent))) if len(sent) > 1 else how.interval or math.inf
-    return Measured(
+    return MeasuredLink(
         Flow(sent, known_everywhere(ours, up), how.sizes.command),
         Flow(sent, known_everywhere(theirs, down), how.sizes.measurement),
         interval,

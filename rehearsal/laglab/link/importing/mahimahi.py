@@ -1,17 +1,20 @@
 """A trace for mahimahi's mm-link: when 1500 bytes may cross; what a run's frames then wait."""
 
-from collections.abc import Sequence
-from itertools import pairwise
+import math
+from collections.abc import Iterator, Sequence
+from itertools import count, pairwise
 from pathlib import Path
 
 import numpy as np
 
 from laglab.link.errors import LinkFileError
 from laglab.link.importing.how import TICK, How
-from laglab.link.measured import Array, Flow, Measured
+from laglab.link.measured import Array, Flow, MeasuredLink
 
 OPPORTUNITY = 1500
 """[byte]"""
+ROUNDING = 1e-9
+"""[s]"""
 LEAST = 10.0
 """[s] A shorter trace is gone through again until it is as long."""
 NOTE = (
@@ -26,11 +29,11 @@ def is_trace(numbers: Sequence[int]) -> bool:
     return bool(numbers) and rising and numbers[0] >= 0 and numbers[-1] > 0
 
 
-def read_mahimahi(numbers: Sequence[int], how: How) -> Measured:
+def read_mahimahi(numbers: Sequence[int], how: How) -> MeasuredLink:
     """Both ways by this trace, or measurements by the one of `how.back`."""
     interval = how.interval or TICK
     other = numbers if how.back is None else _numbers_in(how.back)
-    return Measured(
+    return MeasuredLink(
         _flow(numbers, how.sizes.command, interval),
         _flow(other, how.sizes.measurement, interval),
         interval,
@@ -61,19 +64,21 @@ def waited(trace: Sequence[int], sent: Array, size: int) -> Array:
     An opportunity carries 1500 bytes of what is there by then, pieces of frames too, and is lost
     where nothing is; the trace begins again at its end.
     """
-    crossed = np.empty_like(sent)
-    turn, place, room, at = 0, -1, 0, 0.0
-    for i, entered in enumerate(sent):
+    turns = _opportunities(trace)
+    at, room = -math.inf, 0
+    crossed = []
+    for entered in sent:
         left = size
         while left > 0:
-            if room == 0 or at < entered - 1e-9:
-                place += 1
-                if place == len(trace):
-                    turn, place = turn + 1, 0
-                at = 1e-3 * (turn * trace[-1] + trace[place])
-                room = OPPORTUNITY if at >= entered - 1e-9 else 0
-                continue
+            while room == 0 or at < entered - ROUNDING:
+                at, room = next(turns), OPPORTUNITY
             taken = min(left, room)
             left, room = left - taken, room - taken
-        crossed[i] = max(at, entered)
-    return crossed
+        crossed.append(max(at, entered))
+    return np.array(crossed)
+
+
+def _opportunities(trace: Sequence[int]) -> Iterator[float]:
+    """Their times [s], for ever."""
+    for turn in count():
+        yield from (1e-3 * (turn * trace[-1] + at) for at in trace)

@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from laglab.link.importing.how import NOT_KNOWN_WHICH, How, halves
-from laglab.link.measured import Array, Flow, Measured
+from laglab.link.measured import Array, Flow, MeasuredLink
 from laglab.link.resampling import known_everywhere
 
 ANSWER = re.compile(
@@ -29,7 +29,7 @@ def is_ping(text: str) -> bool:
     )
 
 
-def read_ping(text: str, how: How) -> Measured:
+def read_ping(text: str, how: How) -> MeasuredLink:
     """Halves of round trips."""
     numbered = _answers(text)
     took = _numbered(numbered, text) if numbered else _in_order(text)
@@ -37,7 +37,7 @@ def read_ping(text: str, how: How) -> Measured:
     interval, told = _interval(text, len(took))
     sent = interval * np.arange(len(took), dtype=np.float64)
     note = halves("ping") + ("" if told else " It is taken to have pinged once a second.")
-    return Measured(
+    return MeasuredLink(
         Flow(sent, took / 2, how.sizes.command),
         Flow(sent, known_everywhere(took, np.zeros_like(lost)) / 2, how.sizes.measurement),
         interval,
@@ -72,9 +72,9 @@ def _in_order(text: str) -> Array:
 
 def _interval(text: str, count: int) -> tuple[float, bool]:
     """[s] From ping to ping, and whether the output tells."""
-    stamps = [float(found["at"]) for found in ANSWER.finditer(text) if found["at"]]
-    if len(stamps) > 1:
-        return float(np.median(np.diff(stamps))), True
+    times = [float(found["at"]) for found in ANSWER.finditer(text) if found["at"]]
+    if len(times) > 1:
+        return float(np.median(np.diff(times))), True
     took = TOOK.search(text, text.rfind("packets transmitted"))
     if took and count > 1:
         return 1e-3 * int(took[1]) / (count - 1), True

@@ -10,7 +10,7 @@ from laglab.link.importing.irtt import read_irtt
 from laglab.link.importing.mahimahi import is_trace, read_mahimahi
 from laglab.link.importing.ping import is_ping, read_ping
 from laglab.link.importing.tables import numbers_of
-from laglab.link.measured import Measured
+from laglab.link.measured import MeasuredLink
 from laglab.link.resampling import resampled
 from laglab_gateway import LinkRow
 
@@ -23,7 +23,7 @@ FRAME_START, FRAME_AT = 0xFD, 8
 HEADING = ",".join(LinkRow._fields)
 
 
-def read_link(path: Path, how: How) -> Measured:
+def read_link(path: Path, how: How) -> MeasuredLink:
     """What the file tells of a link, in ticks of `how.interval`, or one a measurement.
 
     Raises LinkFileError: nothing is known in it, or what it is cannot be read.
@@ -32,7 +32,7 @@ def read_link(path: Path, how: How) -> Measured:
     return measured if how.interval is None else resampled(measured, how.interval)
 
 
-def _read(path: Path, how: How) -> Measured:
+def _read(path: Path, how: How) -> MeasuredLink:
     try:
         data = path.read_bytes()
         if data.startswith(GZIP):
@@ -48,7 +48,7 @@ def _read(path: Path, how: How) -> Measured:
     return _read_text(data.decode("utf-8", errors="replace"), path, how)
 
 
-def _read_text(text: str, path: Path, how: How) -> Measured:
+def _read_text(text: str, path: Path, how: How) -> MeasuredLink:
     if text.startswith(HEADING):
         raise LinkFileError(f"{path} is a link.csv already: give it to `laglab link fit`")
     numbers = numbers_of(text)

@@ -27,7 +27,7 @@ TINY = 1e-9
 """[s]"""
 
 
-class Stamps(NamedTuple):
+class ClockTimes(NamedTuple):
     """Of each frame of one direction."""
 
     sent: Array
@@ -36,7 +36,7 @@ class Stamps(NamedTuple):
     """[s] The receiver's clock at arrival less the sender's at sending; NaN: it never came."""
 
     @classmethod
-    def of(cls, sent_ns: Sequence[int], came_ns: Sequence[int | None]) -> Stamps:
+    def of(cls, sent_ns: Sequence[int], came_ns: Sequence[int | None]) -> ClockTimes:
         """Differences are taken as integers: a double does not hold today in nanoseconds."""
         apart = [
             math.nan if came is None else (came - sent) * 1e-9
@@ -56,10 +56,10 @@ class Clocks(NamedTuple):
     note: str
 
 
-def seen_by_clocks(ours: Stamps, theirs: Stamps, within: float | None) -> Clocks:
+def seen_by_clocks(ours: ClockTimes, theirs: ClockTimes, within: float | None) -> Clocks:
     """The delays each way; `within` [s]: so far the clocks agree, None where that is not known."""
     if within is not None:
-        told = [stamps.apart[~np.isnan(stamps.apart)] for stamps in (ours, theirs)]
+        told = [times.apart[~np.isnan(times.apart)] for times in (ours, theirs)]
         least = min(float(each.min()) for each in told if len(each)) if any(map(len, told)) else 0.0
         if least >= -within:
             note = (
@@ -75,7 +75,7 @@ def seen_by_clocks(ours: Stamps, theirs: Stamps, within: float | None) -> Clocks
     return _by_round_trips(ours, theirs, found)
 
 
-def _by_round_trips(ours: Stamps, theirs: Stamps, found: str) -> Clocks:
+def _by_round_trips(ours: ClockTimes, theirs: ClockTimes, found: str) -> Clocks:
     there, back = lowest_line(ours), lowest_line(theirs)
     if there is None or back is None:
         return Clocks(
@@ -95,7 +95,7 @@ def _by_round_trips(ours: Stamps, theirs: Stamps, found: str) -> Clocks:
     return Clocks(np.maximum(ours.apart - ahead, 0), np.maximum(theirs.apart + behind, 0), note)
 
 
-class Line(NamedTuple):
+class LowestLine(NamedTuple):
     """A straight line over time."""
 
     time: float
@@ -107,21 +107,21 @@ class Line(NamedTuple):
         return np.asarray(self.value + self.slope * (np.asarray(time) - self.time))
 
 
-def lowest_line(stamps: Stamps) -> Line | None:
+def lowest_line(times: ClockTimes) -> LowestLine | None:
     """The line beneath all points that is nearest to them on average: the edge of their lower
     convex hull that spans their mean time; level where that would be steeper than clocks drift.
     None without points."""
-    came = ~np.isnan(stamps.apart)
+    came = ~np.isnan(times.apart)
     if not came.any():
         return None
-    points = np.column_stack([stamps.sent[came], stamps.apart[came]])
+    points = np.column_stack([times.sent[came], times.apart[came]])
     points = points[np.lexsort((points[:, 1], points[:, 0]))]
     hull = _lower_hull(points.tolist())
     middle = float(points[:, 0].mean())
     for (t0, d0), (t1, d1) in pairwise(hull):
         if t0 <= middle <= t1 and abs(d1 - d0) <= MOST_DRIFT * (t1 - t0):
-            return Line(t0, d0, (d1 - d0) / max(t1 - t0, TINY))
-    return Line(hull[0][0], min(d for _, d in hull), 0.0)
+            return LowestLine(t0, d0, (d1 - d0) / max(t1 - t0, TINY))
+    return LowestLine(hull[0][0], min(d for _, d in hull), 0.0)
 
 
 def _lower_hull(points: list[list[float]]) -> list[list[float]]:

@@ -4,7 +4,7 @@ from collections import deque
 
 import numpy as np
 
-from laglab.link.probing.clocks import Stamps
+from laglab.link.probing.clocks import ClockTimes
 from laglab_protocol import NO_PROBE, PROBE_LAGS, Probe
 
 SHORTEST = 1000
@@ -149,14 +149,14 @@ class Prober:
             patience += min(PROBE_LAGS[-1] * self.end.interval_us * 1e-6, 4.0)
         return late > patience
 
-    def stamps(self) -> tuple[Stamps, Stamps]:
+    def times(self) -> tuple[ClockTimes, ClockTimes]:
         """Of our frames, and of as many of the other end's: sent by one clock, came by the other.
 
         Of those that were not heard it is not known when they were sent: their numbers tell.
         """
-        ours = Stamps.of(self._sent, [self._came.get(i) for i in range(len(self._sent))])
+        ours = ClockTimes.of(self._sent, [self._came.get(i) for i in range(len(self._sent))])
         sent, came = self._theirs()
-        return ours, Stamps.of(sent, came)
+        return ours, ClockTimes.of(sent, came)
 
     def _theirs(self) -> tuple[list[int], list[int | None]]:
         known = sorted(self._heard)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from laglab.link.errors import LinkPlaceError, NobodyAnswersError
-from laglab.link.measured import Flow, Measured, bursts
+from laglab.link.measured import Flow, MeasuredLink, bursts
 from laglab.link.probing.clock import WallClock
 from laglab.link.probing.clocks import seen_by_clocks
 from laglab.link.probing.ends import Prober
@@ -65,7 +65,7 @@ def probe(
     plan: ProbePlan,
     told: Callable[[Prober], None],
     tell: Callable[[str], None],
-) -> Measured:
+) -> MeasuredLink:
     """Measure the link to whoever answers there; `told` is told how it goes.
 
     Raises NobodyAnswersError, LinkPlaceError when what answers has a rate of its own, and an
@@ -115,8 +115,8 @@ def _find(talk: _Talk, prober: Prober, plan: ProbePlan, name: str) -> None:
     )
 
 
-def _measured(prober: Prober, plan: ProbePlan, sizes: Sizes) -> Measured:
-    ours, theirs = prober.stamps()
+def _measured(prober: Prober, plan: ProbePlan, sizes: Sizes) -> MeasuredLink:
+    ours, theirs = prober.times()
     clocks = seen_by_clocks(ours, theirs, plan.within)
     notes = [clocks.note]
     if (gap := max(bursts(np.isnan(clocks.theirs)), default=0)) > PROBE_LAGS[-1]:
@@ -124,7 +124,7 @@ def _measured(prober: Prober, plan: ProbePlan, sizes: Sizes) -> Measured:
             f"For {gap * plan.interval:.3g} s nothing came back: commands that came meanwhile, and "
             "of which nothing was told, count as lost."
         )
-    return Measured(
+    return MeasuredLink(
         Flow(ours.sent, clocks.ours, sizes.command),
         Flow(theirs.sent, clocks.theirs, sizes.measurement),
         plan.interval,
