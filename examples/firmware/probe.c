@@ -4,6 +4,9 @@ static const uint32_t LAGS[PROBE_PLACES] = {0, 16, 240}; /* as the dialect has t
 static const double FORGOTTEN = 1.0;                     /* s */
 
 void probe_hear(Probing *probing, uint32_t session, uint32_t sequence, uint64_t time) {
+    if (probing->running && session != probing->session && session != probing->session + 1) {
+        return;
+    }
     if (!probing->running || probing->session != session) {
         *probing = (Probing){.running = true, .session = session};
     }

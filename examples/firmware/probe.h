@@ -23,7 +23,7 @@ typedef struct {
     uint32_t next[PROBE_PLACES]; /* by place: the number of the arrival that is told next */
 } Probing;
 
-/* A probe came; one of another session begins anew. */
+/* A probe came; one of the next session begins anew, one of any other only when this one is over. */
 void probe_hear(Probing *probing, uint32_t session, uint32_t sequence, uint64_t time);
 
 /* What is told in the next probe, by place. */

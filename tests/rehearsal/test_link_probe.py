@@ -16,6 +16,7 @@ from laglab.link.measured import bursts, read_measured
 from laglab.link.probing import Clocks, Prober, Sizes, real_sizes, seen_by_clocks
 from laglab.link.probing.clocks import ClockTimes, lowest_line
 from laglab.link.probing.ends import Echo
+from laglab.link.probing.probe import hidden_arrivals
 from laglab.link.probing.sizes import overload
 from laglab_protocol import NO_PROBE, PROBE_FILLER, Probe, Sender, make_key, open_endpoint
 
@@ -138,6 +139,35 @@ def test_a_line_that_carries_less_than_a_run_says_is_told() -> None:
     for url in ("serial:///dev/ttyUSB0:230400", "/dev/ttyUSB0,230400", "udpout://1.2.3.4:9"):
         assert overload(url, sizes, 0.01) is None
     assert overload("/dev/ttyUSB0,57600", sizes, 0.01) is not None
+
+
+def test_who_measures_is_not_disturbed_by_another() -> None:
+    echo = Echo(FILLER)
+
+    def asked(session: int) -> Probe:
+        return Probe(0, (0, 0, 0), session, 0, INTERVAL_US, (NO_PROBE,) * 3, FILLER)
+
+    last = 2**32 - 1
+    assert echo.is_for(asked(last), 0)
+    echo.hear(asked(last), 0)
+    assert echo.is_for(asked(last), 1)
+    assert echo.is_for(asked(0), 1), "the next one is the same measurer's"
+    assert not echo.is_for(asked(1), 1)
+    assert echo.is_for(asked(1), 10**9)
+
+
+def test_arrivals_of_which_nothing_tells_are_estimated() -> None:
+    rng = np.random.default_rng(1)
+    lost = rng.random((2, 9000)) < 0.3
+    seen = crossed(
+        2000,
+        lambda i: None if lost[0, i] else 10_000_000,
+        lambda i: None if lost[1, i] else 10_000_000,
+    )
+    hidden = int(np.isnan(seen.ours).sum() - lost[0, :2000].sum())
+    assert hidden > 10
+    assert hidden_arrivals(seen) == pytest.approx(hidden, rel=0.5)
+    assert hidden_arrivals(Clocks(np.zeros(9), np.zeros(9), "")) == 0
 
 
 @pytest.fixture

@@ -24,7 +24,7 @@ def echo(link: Listener, codec: Codec, tell: Callable[[str], None]) -> None:
         frames = link.listen(end.wait(clock(), IDLE))
         now = clock()
         for probe in map(_probe_of, frames):
-            if probe is None:
+            if probe is None or not end.is_for(probe, now):
                 continue
             link.link.accept_peer()
             if end.hear(probe, now):

@@ -9,10 +9,16 @@ from laglab_protocol import NO_PROBE, PROBE_LAGS, Probe
 
 SHORTEST = 1000
 """[us] No probe is answered more often."""
+SESSIONS = 2**32
 KEPT = 2 * PROBE_LAGS[-1]
 """Arrivals."""
 FORGOTTEN = 1.0
 """[s] Without a probe for so long a session is over."""
+
+
+def following(session: int) -> int:
+    """The next number."""
+    return (session + 1) % SESSIONS
 
 
 class ProbeEnd:
@@ -59,8 +65,15 @@ class Echo:
         self._due_ns = 0
         self._heard_ns = 0
 
+    def is_for(self, probe: Probe, now_ns: int) -> bool:
+        """Whether this one is answered: another session waits until this one is over, but for the
+        next number, which is the same measurer's."""
+        if self.end is None or (now_ns - self._heard_ns) * 1e-9 >= FORGOTTEN:
+            return True
+        return probe.session in (self.end.session, following(self.end.session))
+
     def hear(self, probe: Probe, now_ns: int) -> bool:
-        """Whether a session begins with this one."""
+        """Take one that is answered; whether a session begins with it."""
         begins = self.end is None or self.end.session != probe.session
         if self.end is None or begins:
             interval_us = max(probe.interval_us, SHORTEST)

@@ -9,8 +9,8 @@ import numpy as np
 from laglab.link.errors import LinkPlaceError, NobodyAnswersError
 from laglab.link.measured import Flow, MeasuredLink, bursts
 from laglab.link.probing.clock import WallClock
-from laglab.link.probing.clocks import seen_by_clocks
-from laglab.link.probing.ends import Prober
+from laglab.link.probing.clocks import Clocks, seen_by_clocks
+from laglab.link.probing.ends import SESSIONS, Prober, following
 from laglab.link.probing.sizes import Sizes, filler_for, overload, real_sizes
 from laglab_protocol import PROBE_LAGS, ROBOT_SYSTEM, Codec, Listener, Probe, Refusals
 
@@ -78,8 +78,9 @@ def probe(
     filler = filler_for(sender, sizes.command)
     interval_us = round(plan.interval * 1e6)
     talk = _Talk(link, codec, tell)
-    _find(talk, Prober(_session(), 0, interval_us, filler), plan, link.link.name)
-    prober = Prober(_session(), plan.frames, interval_us, filler)
+    session = secrets.randbelow(SESSIONS)
+    _find(talk, Prober(session, 0, interval_us, filler), plan, link.link.name)
+    prober = Prober(following(session), plan.frames, interval_us, filler)
     due = talk.clock()
     while not prober.is_done(talk.clock()):
         talk.say(prober)
@@ -88,10 +89,6 @@ def probe(
         for message, now in talk.hear_until(due):
             prober.hear(message, now)
     return _measured(prober, plan, sizes)
-
-
-def _session() -> int:
-    return secrets.randbits(32)
 
 
 def _find(talk: _Talk, prober: Prober, plan: ProbePlan, name: str) -> None:
@@ -119,6 +116,11 @@ def _measured(prober: Prober, plan: ProbePlan, sizes: Sizes) -> MeasuredLink:
     ours, theirs = prober.times()
     clocks = seen_by_clocks(ours, theirs, plan.within)
     notes = [clocks.note]
+    if (hidden := hidden_arrivals(clocks)) >= 0.5:
+        notes.append(
+            f"About {hidden:.0f} of the commands that count as lost came: what tells of them was "
+            "lost, each of three times."
+        )
     if (gap := max(bursts(np.isnan(clocks.theirs)), default=0)) > PROBE_LAGS[-1]:
         notes.append(
             f"For {gap * plan.interval:.3g} s nothing came back: commands that came meanwhile, and "
@@ -130,3 +132,11 @@ def _measured(prober: Prober, plan: ProbePlan, sizes: Sizes) -> MeasuredLink:
         plan.interval,
         tuple(notes),
     )
+
+
+def hidden_arrivals(clocks: Clocks) -> float:
+    """How many commands came, as is to be expected, of which nothing that tells of them came: as
+    if frames were lost each by itself."""
+    lost = float(np.isnan(clocks.theirs).mean()) ** len(PROBE_LAGS)
+    told = int(np.sum(~np.isnan(clocks.ours)))
+    return told * lost / (1 - lost) if lost < 1 else 0.0
