@@ -28,7 +28,7 @@ from laglab.results.whole import whole_file
 from laglab.results.writable import file_place
 from laglab.runs.station_side import station_config
 from laglab.scenario import load
-from laglab_control import delay_margin
+from laglab_control import PolarLaw, delay_margin
 from laglab_gateway import Impairments
 from laglab_protocol import (
     ROBOT_COMPONENT,
@@ -234,7 +234,8 @@ def fit(
         written.write(scenario_toml(on, found.link).encode())
     console = Console()
     console.print(fit_table(found))
-    margin = delay_margin(station_config(on).law, interval)
+    law = station_config(on).law
+    margin = delay_margin(law, interval) if isinstance(law, PolarLaw) else None
     console.print(choices_table(found, margin))
     for line in suggestions(found):
         console.print(line, highlight=False, markup=False)

@@ -83,8 +83,8 @@ def fit_table(fit: Fit) -> Table:
     return table
 
 
-def choices_table(fit: Fit, margin: DelayMargin) -> Table:
-    """What each pair of bounds costs."""
+def choices_table(fit: Fit, margin: DelayMargin | None) -> Table:
+    """What each pair of bounds costs; without a margin, of a law of which none is known."""
     table = plain_table(title="Play-out: later bounds, fewer frames late, longer delays")
     for heading in ("", "n", "m", "late [%]", "lost or late [%]", "n + m", "[ms]", "to the margin"):
         table.add_column(Text(heading), justify="right")
@@ -96,7 +96,7 @@ def choices_table(fit: Fit, margin: DelayMargin) -> Table:
             _percents(choice.unused),
             str(choice.total),
             f"{1e3 * choice.total * fit.measured.interval:.0f}",
-            " ".join(f"{each - choice.total:+d}" for each in margin if each is not None),
+            " ".join(f"{each - choice.total:+d}" for each in margin or () if each is not None),
         )
     return table
 
