@@ -52,7 +52,9 @@ from laglab_protocol.messages.geographic import (
     SetHomePosition,
 )
 from laglab_protocol.messages.loop import (
+    LONGEST_PLAN,
     NO_COMMAND,
+    PLANNED,
     RECALLED,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
@@ -66,6 +68,7 @@ from laglab_protocol.messages.loop import (
     EndReason,
     Estimate,
     Measurement,
+    Plan,
     Recall,
     Settings,
     Tick,
@@ -122,10 +125,12 @@ from laglab_protocol.tlog import TlogError, read_tlog, tlog_record
 __all__ = [
     "EVERY_MESSAGE",
     "LEAST_BYTES",
+    "LONGEST_PLAN",
     "MAV_SEVERITY_EMERGENCY",
     "MAV_SEVERITY_ERROR",
     "MAV_SEVERITY_WARNING",
     "NO_COMMAND",
+    "PLANNED",
     "RECALLED",
     "ROBOT_COMPONENT",
     "ROBOT_SYSTEM",
@@ -200,6 +205,7 @@ __all__ = [
     "ParamSet",
     "ParamValue",
     "Ping",
+    "Plan",
     "PortBusyError",
     "ProtocolError",
     "Quantiles",
