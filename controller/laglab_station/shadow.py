@@ -7,7 +7,7 @@ import numpy as np
 
 from laglab_control import Control, Controller, Demand, StationConfig
 from laglab_control.model import Matrix, Vector
-from laglab_station.hearing import echoes, measured, recalled
+from laglab_station.hearing import Came, PlayedOut, echoes, measured, recalled
 from laglab_station.session import SessionTick
 
 NOTHING = np.full((3, 3), np.nan)
@@ -24,16 +24,18 @@ class ShadowRow(NamedTuple):
     """(3, 3)."""
 
 
-def shadow(config: StationConfig, session: Iterable[SessionTick]) -> Iterator[ShadowRow]:
+def shadow(
+    config: StationConfig, session: Iterable[SessionTick], playout: int = 0
+) -> Iterator[ShadowRow]:
     """Run `config.estimator` beside the commands that were sent; the first tick heard is tick 0.
 
-    The law of `config` is not asked. Over ticks that are missing, the last command held. It ends
-    early when the estimate has become infinite.
+    Measurements are played out as by the station. The law of `config` is not asked. Over ticks that
+    are missing, the last command held. It ends early when the estimate has become infinite.
     """
     controller = Controller(config)
     control = controller.start()
     first = last = None
-    for heard in session:
+    for heard in _played_out(session, playout):
         first, last = (heard.tick, heard.tick) if first is None or last is None else (first, last)
         for _ in range(heard.tick - last):
             control = controller.advance(control)
@@ -43,6 +45,18 @@ def shadow(config: StationConfig, session: Iterable[SessionTick]) -> Iterator[Sh
         if x is not None and not np.all(np.isfinite(x)):
             return
         yield ShadowRow(last, NOTHING[0] if x is None else x, NOTHING if P is None else P)
+
+
+def _played_out(session: Iterable[SessionTick], bound: int) -> Iterable[SessionTick]:
+    if not bound:
+        return session
+    held = PlayedOut(bound)
+    return (
+        heard._replace(
+            measurements=held.take(heard.tick, Came(heard.measurements, ())).measurements
+        )
+        for heard in session
+    )
 
 
 def _followed(controller: Controller, control: Control, heard: SessionTick, first: int) -> Control:

@@ -28,7 +28,7 @@ from laglab_protocol import (
     Timesync,
 )
 from laglab_station.alarms import Alarms
-from laglab_station.hearing import Came, Coming, echoes, measured, recalled
+from laglab_station.hearing import Came, Coming, PlayedOut, echoes, measured, recalled
 from laglab_station.joining import Rest, observe, prior
 from laglab_station.recalling import Questions
 from laglab_station.report import Calibrated, StationReport
@@ -57,10 +57,12 @@ class Station:
         clock: Callable[[], int] | None = None,
         sender: Sender | None = None,
         settings: Settings | None = None,
+        playout: int = 0,
     ) -> None:
         """`clock` [ns] times the ticks and answers TIMESYNC; without one neither is done.
 
-        `settings` is what the robot is told to compare with; by default what `config` knows.
+        `settings` is what the robot is told to compare with; by default what `config` knows. A
+        measurement is used `playout` ticks after its sampling, or as soon as it comes if that is 0.
         """
         self._config = config
         self._make_controller = controller
@@ -72,6 +74,7 @@ class Station:
         self.robot_settings: Settings | None = None
         self._robot: tuple[int, int] | None = None
         self._coming = Coming()
+        self._played_out = PlayedOut(playout) if playout else None
         self._questions = Questions()
         self._restart = Restart()
         self._first = 0
@@ -127,6 +130,7 @@ class Station:
             alarms=tuple(self._alarms.told),
             alarms_raised=self._alarms.raised,
             gated=self._alarms.gated(self._controller, self._control),
+            late=self._played_out.late if self._played_out else 0,
             emergency_stop=self._warnings.emergency_stop,
             calibration=tuple(starmap(Calibrated, self._controller.learned(self._control))),
         )
@@ -210,6 +214,8 @@ class Station:
         if message.tick == self._tick:
             return self._answer
         if self._outcome is None and (self._tick is None or message.tick > self._tick):
+            if self._played_out:
+                came = self._played_out.take(message.tick, came)
             self._advance_timed(message.tick, came)
             return self._answer
         return []
@@ -224,6 +230,8 @@ class Station:
         self._look_back()
         self._first, self._tick = tick, None
         self._questions = Questions()
+        if self._played_out:
+            self._played_out.begin_anew()
         self._alarms.handed_over(self._controller, self._control)
         self._control, self._ahead = self._controller.start(), None
         self._joining = Rest() if tick > 0 and self._controller.kind.predicts else None

@@ -34,6 +34,8 @@ class Rejection(Enum):
     NOT_FINITE = "not finite"
     OUT_OF_LIMITS = "out of limits"
     STALE = "stale"
+    LATE = "late"
+    INCOMPLETE = "incomplete"
 
 
 WHY_STOPPING = {

@@ -95,8 +95,15 @@ class Relay(RobotSide):
 
     @property
     def told_robot(self) -> Settings:
-        """Our settings less the delays, which are the link's, behind which the robot is."""
-        return replace(self.settings, command_delay=UNKNOWN_DELAY, measurement_delay=UNKNOWN_DELAY)
+        """Our settings less the delays, which are the link's, behind which the robot is; it has no
+        play-out but ours."""
+        return replace(
+            self.settings,
+            command_delay=UNKNOWN_DELAY,
+            measurement_delay=UNKNOWN_DELAY,
+            command_playout=0,
+            measurement_playout=UNKNOWN_DELAY,
+        )
 
     def hear_robot(self, frame: Frame) -> bool:
         """Take one frame of the robot; True when it begins a new tick, all announced with it.
@@ -134,6 +141,7 @@ class Relay(RobotSide):
         tick, samples = self._heard
         if not self.under_way:
             self.first, self._in_force = tick, tick - 1
+            self._commands.first = tick
             self.under_way = True
         elif tick < self.tick:
             self._meet_anew(tick)
@@ -149,6 +157,7 @@ class Relay(RobotSide):
         self.first, self._in_force = tick - (self.elapsed + 1), tick - 1
         self._answered_through = tick - 1
         self._commands.clear()
+        self._commands.first = self.first
         self._measurements.clear()
         self._asks.clear()
         self._memory.forget()
@@ -169,11 +178,12 @@ class Relay(RobotSide):
         """The frames for the robot: the commands that are to come into force at its next tick."""
         safety = self.safety
         frames: list[bytes] = []
-        for message, _ in self._commands.due(self.elapsed + 1):
-            if isinstance(message, Recall):
-                self._remember(message)
-            elif self._follow(message, self.tick + 1, safety):
-                frames += map(self._to_robot.frame, [*self._asks, self._allowed(message)])
+        came = self._take_commands(self.tick + 1)
+        for asked in came.recalls:
+            self._remember(asked)
+        for planned in came.ready:
+            if self._follow(planned.command, self.tick + 1, safety):
+                frames += map(self._to_robot.frame, [*self._asks, self._allowed(planned.command)])
                 self._asks.clear()
         self._say_why_stopping(safety)
         return frames

@@ -5,12 +5,14 @@ What moves comes in two kinds: a plant that is stepped (`core`), and a robot wit
 own (`relay`).
 """
 
+import math
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
 
 from laglab_gateway.config import GatewayConfig
 from laglab_gateway.drive import WHY_STOPPING, Drive, Rejection, Safety, follow, rejection
+from laglab_gateway.incoming import Came, Incoming
 from laglab_gateway.link.channel import Channel
 from laglab_gateway.link.fates import FateKind, Fates
 from laglab_gateway.link.log import LinkRow
@@ -75,7 +77,9 @@ class RobotSide(ABC):
         self._sender = sender or Sender(ROBOT_SYSTEM, ROBOT_COMPONENT)
         self._notices: list[Statustext] = []
         fates = fates or {}
-        self._commands: Channel[Command | Recall] = Channel("command", n, Ts, fates.get("command"))
+        self._commands = Incoming(
+            Channel("command", n, Ts, fates.get("command")), config.command_playout
+        )
         self._measurements: Channel[Measurement | Applied] = Channel(
             "measurement", m, Ts, fates.get("measurement")
         )
@@ -124,8 +128,10 @@ class RobotSide(ABC):
     def _tell(self, samples: Iterable[Measurement]) -> list[bytes]:
         """Put samples on the link, and some of what the station asked to be told; the frames: all
         that has come across, and the tick."""
+        bound = self._config.measurement_playout
         for sample in samples:
-            self._measurements.push(self.elapsed, sample)
+            until = sample.tick - self.first + bound if bound else math.inf
+            self._measurements.push(self.elapsed, sample, until)
         for told in self._owed.take():
             self._measurements.push(self.elapsed, told)
         due = [crossing.message for crossing in self._measurements.due(self.elapsed)]
@@ -199,16 +205,26 @@ class RobotSide(ABC):
     def _push(self, command: Command) -> None:
         """Put it on the link, with what was asked in the same breath, however late it comes."""
         self._answered_through = command.tick
-        self._commands.push(self.elapsed, command)
-        for recall in self._recalls:
-            self._commands.push(self.elapsed, recall)
+        self._commands.push(self.elapsed, command, [], self._recalls)
         self._recalls.clear()
+
+    def _take_commands(self, tick: int) -> Came:
+        """What has come across the link by `tick`; what cannot be followed any more is counted."""
+        came = self._commands.take(tick)
+        for late in came.late:
+            self._refuse(late.command, tick, Rejection.LATE)
+        for command in came.incomplete:
+            self._refuse(command, tick, Rejection.INCOMPLETE)
+        return came
+
+    def _refuse(self, command: Command, tick: int, why: Rejection) -> None:
+        self.audit.refused[why] += 1
+        self.notes.came("command", command.tick, tick, tick - self.first, why.value)
 
     def _follow(self, command: Command, tick: int, safety: Safety) -> bool:
         """Follow from `tick` on a command that came across; False, and counted, when rejected."""
         if rejected := rejection(self._drive, command, safety):
-            self.audit.refused[rejected] += 1
-            self.notes.came("command", command.tick, tick, tick - self.first, rejected.value)
+            self._refuse(command, tick, rejected)
             self._rejected = rejected if rejected in WHY_STOPPING else self._rejected
             return False
         self._drive, self._rejected = follow(command, tick), None

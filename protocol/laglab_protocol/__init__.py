@@ -113,6 +113,7 @@ from laglab_protocol.messages.standard import (
     SystemTime,
     Timesync,
 )
+from laglab_protocol.playout import Playout
 from laglab_protocol.ration import LEAST_BYTES, Ration
 from laglab_protocol.refusals import Refusals
 from laglab_protocol.restart import Restart
@@ -206,6 +207,7 @@ __all__ = [
     "ParamValue",
     "Ping",
     "Plan",
+    "Playout",
     "PortBusyError",
     "ProtocolError",
     "Quantiles",

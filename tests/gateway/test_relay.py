@@ -7,6 +7,7 @@ import pytest
 
 from laglab_gateway import (
     Event,
+    ExtraDelay,
     GatewayConfig,
     Impairments,
     Outcome,
@@ -153,6 +154,26 @@ def test_both_delays_are_exact_by_the_robots_own_word(n: int, m: int, first: int
     for direction, delay in (("command", n), ("measurement", m)):
         assert getattr(report, direction).measured.min == delay
         assert getattr(report, direction).measured.max == delay
+
+
+@pytest.mark.parametrize("first", [0, 5000])
+def test_in_front_of_a_robot_commands_are_played_out_here(first: int) -> None:
+    jitter = Impairments(extra_delay=ExtraDelay("uniform", 0.03, 0.03))  # up to 6 ticks
+    services = Services(standard_parameters(2, 0, Safety()), placeable=False)
+    config = GatewayConfig(2, 0, 10**6, TS, command_playout=6)
+    fates = RandomFates(jitter, [], np.random.default_rng(1))
+    rig = Rig(Relay(config, services, {"command": fates}), first)
+    rig.run(200)
+    late = {row.tick for row in rig.relay.take_link_rows() if row.fate == "late"}
+    assert 20 < len(late) < 100  # a third
+    held = 0.0
+    for k, row in enumerate(rig.rows):
+        if k >= 6 and k - 6 not in late:
+            held = (first + k - 6) / 1000
+        assert row.v == held
+    assert rig.relay.told_robot.command_playout == 0
+    assert rig.relay.settings.command_playout == 6
+    assert rig.relay.audit.report().refused["late"] == pytest.approx(len(late), abs=6)
 
 
 def test_with_n_zero_a_command_is_in_force_at_the_robots_next_tick() -> None:

@@ -32,7 +32,7 @@ class RecordedFates:
     def __init__(self, rows: Iterable[LinkRow]) -> None:
         self._fates: dict[tuple[int, int], list[tuple[FateKind, float]]] = defaultdict(list)
         for row in rows:
-            self._fates[row.tick, row.frame].append((FateKind(row.fate), row.extra))
+            self._fates[row.tick, row.frame].append((_done(row.fate), row.extra))
         self._tick, self._frame = -1, 0
 
     def of(self, tick: int, time: float, raw: bytes) -> list[Fate]:  # noqa: ARG002 the tick tells
@@ -44,6 +44,12 @@ class RecordedFates:
             Fate(kind, extra, raw if kind is FateKind.DELIVERED else b"")
             for kind, extra in recorded
         ]
+
+
+def _done(fate: str) -> FateKind:
+    """By the link: who was late for play-out was delivered."""
+    kind = FateKind(fate)
+    return FateKind.DELIVERED if kind is FateKind.LATE else kind
 
 
 def read_link_log(path: Path, direction: Direction) -> list[LinkRow]:

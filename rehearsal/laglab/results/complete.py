@@ -62,7 +62,7 @@ def complete(
         ResultsError: something cannot be written.
     """
     try:
-        numbers = digest(trace_pieces(directory / TRACE_FILE), scenario.link.measurement_delay)
+        numbers = digest(trace_pieces(directory / TRACE_FILE), scenario.link.m)
     except TraceError as error:
         raise nothing_recorded(ending, str(error)) from None
     compared = {name: _shadowed(scenario, name, directory) for name in scenario.estimator.compare}
@@ -86,10 +86,8 @@ def keep(scenario: Scenario, way: Way, ending: Ending, recorder: MemoryRecorder)
     for name in names:
         rows = list(shadow_rows(scenario, name, session))
         shadows[name] = collected(rows)
-        compared[name] = shadow_error(rows, [trace], scenario.link.measurement_delay)
-    summary = summarise(
-        scenario, way, ending, digest([trace], scenario.link.measurement_delay), compared
-    )
+        compared[name] = shadow_error(rows, [trace], scenario.link.m)
+    summary = summarise(scenario, way, ending, digest([trace], scenario.link.m), compared)
     return Run(scenario, summary, None, Kept(trace, _tables(recorder), shadows))
 
 
@@ -123,7 +121,7 @@ def _shadowed(scenario: Scenario, name: str, directory: Path) -> Errors | None:
     rows = shadow_rows(scenario, name, read_session(directory / TLOG_FILE))
     written = kept_rows(rows, shadow_file(directory, name))
     pieces = trace_pieces(directory / TRACE_FILE)
-    return shadow_error(written, pieces, scenario.link.measurement_delay)
+    return shadow_error(written, pieces, scenario.link.m)
 
 
 def summarise(
@@ -148,8 +146,8 @@ def summarise(
         transport=way.transport,
         plant=way.plant,
         estimator=scenario.estimator.kind,
-        n=scenario.link.command_delay,
-        m=scenario.link.measurement_delay,
+        n=scenario.link.n,
+        m=scenario.link.m,
         seed=scenario.seed,
         ticks=ticks,
         pose=numbers.seen,

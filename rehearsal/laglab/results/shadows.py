@@ -37,7 +37,7 @@ def shadow_rows(
     Raises: ScenarioError, when there is no such estimator.
     """
     config = station_config(changed(scenario, {"estimator.kind": name}))
-    return shadow(config, session)
+    return shadow(config, session, scenario.link.playout.measurement)
 
 
 def kept_rows(rows: Iterable[ShadowRow], path: Path) -> Iterator[ShadowRow]:

@@ -35,7 +35,7 @@ def station_config(scenario: Scenario) -> StationConfig:
         law=Law(goal=scenario.goal, **dict(scenario.law)),
         initial_estimate=scenario.first_estimate(),
         initial_covariance=scenario.estimator.initial_covariance * np.eye(3),
-        command_delay=scenario.link.command_delay,
+        command_delay=scenario.link.n,
         guard=scenario.estimator.guard,
     )
 
@@ -51,6 +51,8 @@ def station_settings(scenario: Scenario) -> Settings:
         omega_max=math.inf if omega_max is None else omega_max,
         command_delay=scenario.link.command_delay,
         measurement_delay=scenario.link.measurement_delay,
+        command_playout=scenario.link.playout.command,
+        measurement_playout=scenario.link.playout.measurement,
     )
 
 
@@ -66,6 +68,7 @@ def make_station(
         clock=time.monotonic_ns,
         sender=sender,
         settings=station_settings(scenario),
+        playout=scenario.link.playout.measurement,
     )
 
 

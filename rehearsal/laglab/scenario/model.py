@@ -108,9 +108,8 @@ class Scenario(Table):
     @property
     def gist(self) -> str:
         """Filter, delays and noise, in a few words."""
-        n, m = self.link.command_delay, self.link.measurement_delay
         noise = "on" if self.noise else "off"
-        return f"{self.estimator.kind}, n = {n}, m = {m}, noise {noise}"
+        return f"{self.estimator.kind}, n = {self.link.n}, m = {self.link.m}, noise {noise}"
 
     def first_estimate(self) -> NDArray[np.float64]:
         """x̂_0, shape (3,): the true start, a pose, or drawn from N(start, P_0) by the seed."""

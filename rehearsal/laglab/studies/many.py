@@ -68,6 +68,9 @@ def why_one_by_one(scenario: Scenario) -> str | None:
         f"there is no {scenario.estimator.kind} for many robots": (
             scenario.estimator.kind not in BATCHED
         ),
+        "there is no play-out for many robots (playout)": bool(
+            link.playout.command or link.playout.measurement
+        ),
         "somebody moves the robot (plant.event)": bool(scenario.plant.event),
         "the run does not end by itself (duration)": scenario.last_tick is None,
         "the clock paces it (pace)": scenario.pace != "lockstep",
