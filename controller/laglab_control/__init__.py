@@ -38,7 +38,7 @@ from laglab_control.estimators import (
 from laglab_control.estimators.kalman import normalised_squared
 from laglab_control.flight import Echo
 from laglab_control.guard import Alarm, Guard
-from laglab_control.laws import DelayMargin, Demand, Law, delay_margin
+from laglab_control.laws import DelayMargin, Demand, Law, PolarLaw, SpeedLimits, delay_margin
 from laglab_control.model import Model, NonlinearModel
 from laglab_control.plugins import (
     Plugin,
@@ -79,6 +79,7 @@ __all__ = [
     "Parameters",
     "Plugin",
     "PluginError",
+    "PolarLaw",
     "Popf",
     "PopfExact",
     "PrintedController",
@@ -87,6 +88,7 @@ __all__ = [
     "Rewinding",
     "RigidMotions",
     "RobotModel",
+    "SpeedLimits",
     "StampError",
     "State",
     "StationConfig",

@@ -24,7 +24,7 @@ from laglab_control.estimators.interface import (
 from laglab_control.estimators.kalman import Belief, Innovation
 from laglab_control.flight import Echo, Flight, hear, send, take_off
 from laglab_control.guard import Alarm, Guard, Watched
-from laglab_control.laws.aicardi import STAND_STILL, Demand, Law, as_input
+from laglab_control.laws import STAND_STILL, Demand, Law, PolarLaw, SpeedLimits, as_input
 from laglab_control.limits import Ticks, check, covariance, finite_pose
 from laglab_control.model import Matrix, Vector
 from laglab_control.motion import Way, joined
@@ -52,7 +52,11 @@ class StationConfig:
 
     estimator: str = "popf"
     model: RobotModel = field(default_factory=RobotModel)
-    law: Law = field(default_factory=Law)
+    law: Law = field(default_factory=PolarLaw)
+    limits: SpeedLimits = field(default_factory=SpeedLimits)
+    """Of the commands, whatever the law asks for."""
+    goal: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """What the run is about: whoever is FAR from it is lost."""
     initial_estimate: ArrayLike = (0.0, 0.0, 0.0)
     initial_covariance: ArrayLike = field(default_factory=lambda: np.eye(3) * INITIAL_VARIANCE)
     command_delay: Ticks = 0
@@ -60,13 +64,16 @@ class StationConfig:
     the delay m of a measurement is read from its own stamp."""
     guard: bool = False
     """Whether the estimator is watched (`Guard`)."""
+    first_tick: Ticks = 0
+    """The robot's tick that is the controller's tick 0: the law's time is the robot's."""
 
     def __post_init__(self) -> None:
         estimator_kind(self.estimator)
         check(self)
         x = finite_pose(self.initial_estimate, "initial_estimate")
         P = covariance(self.initial_covariance, 3, "initial_covariance")
-        if is_far(x.tolist(), self.law.goal):
+        finite_pose(self.goal, "goal")
+        if is_far(x.tolist(), self.goal):
             raise ConfigError(
                 f"initial_estimate must be within {FAR:g} m of the goal, not {x.tolist()}"
             )
@@ -80,7 +87,7 @@ class Control(NamedTuple):
     estimate: State
     flight: Flight
     drive: Demand
-    """The last command."""
+    """The last command, as sent, and the law's memory."""
     pose: Vector | None = None
     """The estimate (3,) [m, m, rad] after the tick's correction; None: there is none."""
     P: Matrix | None = None
@@ -148,6 +155,21 @@ class Controller:
 
         The robot is to stand still when there is no estimate to drive it by, or it has diverged.
         """
+        estimate, flight, last, pose, P = self.correct(control, measurements, echoes, recalled)
+        if pose is None or self.diverged(pose):
+            return Control(estimate, flight, STAND_STILL, pose, P)
+        tick = self.config.first_tick + flight.tick + flight.command_delay
+        drive = self.command(self._at_arrival(pose, flight, last), tick, last, P)
+        return Control(estimate, flight, drive, pose, P)
+
+    def correct(
+        self,
+        control: Control,
+        measurements: Sequence[Measured],
+        echoes: Sequence[Echo] = (),
+        recalled: Sequence[Applied] = (),
+    ) -> Control:
+        """The tick's correction alone; `drive` is still the last command."""
         estimate, flight, drive, *_ = control
         flight, inputs = hear(self._robot(estimate), flight, echoes, recalled)
         if self._guard and isinstance(estimate, Watched):
@@ -159,21 +181,21 @@ class Controller:
         if pose is not None and P is not None:
             unknown = doubt(flight, self.config.model, pose)
             P = P if unknown is None else P + unknown
-        return Control(estimate, flight, self._command(pose, P, flight, drive), pose, P)
+        return Control(estimate, flight, drive, pose, P)
 
-    def _command(
-        self, pose: Vector | None, P: Matrix | None, flight: Flight, last: Demand
-    ) -> Demand:
-        if pose is None or self.diverged(pose):
-            return STAND_STILL
-        law = self.config.law
-        demand = law.drive(self._at_arrival(pose, flight, last), last.at_goal)
-        return demand if P is None else law.slowed(demand, P)
+    def command(self, there: Way[float], tick: int, last: Demand, P: Matrix | None) -> Demand:
+        """What is sent after `last` for a robot that will be `there` [m, m, rad] at its `tick`.
+
+        `P` (3, 3) is the covariance that is claimed for the present estimate.
+        """
+        config, sample_time = self.config, self.config.model.sample_time
+        asked = Demand(*config.law.drive(there, tick * sample_time, last.memory))
+        return config.limits.limited(asked, P, last, sample_time)
 
     def diverged(self, x: Vector) -> bool:
         """Whether a pose estimate is not finite, or FAR from where it began and from the goal."""
         pose = x.tolist()
-        return is_far(pose, self.config.law.goal) and is_far(pose, self._began)
+        return is_far(pose, self.config.goal) and is_far(pose, self._began)
 
     def warning(self, control: Control) -> str | None:
         """The estimator's."""

@@ -14,7 +14,7 @@ from laglab_control.controller import Controller
 from laglab_control.estimators.interface import Estimator
 from laglab_control.estimators.popf import Popf
 from laglab_control.flight import Flight
-from laglab_control.laws.aicardi import Demand, as_input
+from laglab_control.laws import Demand, as_input
 from laglab_control.model import Matrix, Vector, symmetric
 from laglab_control.motion import Way, joined
 from laglab_control.robot import RobotModel

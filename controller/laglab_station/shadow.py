@@ -60,12 +60,12 @@ def _played_out(session: Iterable[SessionTick], bound: int) -> Iterable[SessionT
 
 
 def _followed(controller: Controller, control: Control, heard: SessionTick, first: int) -> Control:
-    """The controller's answer, but with the command that was really sent, or the last one."""
+    """The controller's correction, with the command that was really sent, or the last one."""
     drive = control.drive
     if heard.command is not None:
-        drive = Demand(heard.command.v, heard.command.omega, at_goal=False)
+        drive = Demand(heard.command.v, heard.command.omega)
     with np.errstate(over="ignore", invalid="ignore"):
-        control = controller.answer(
+        control = controller.correct(
             control,
             measured(heard.measurements, first, heard.tick),
             echoes(heard.measurements, first, heard.tick),

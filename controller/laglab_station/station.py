@@ -233,6 +233,8 @@ class Station:
         if self._played_out:
             self._played_out.begin_anew()
         self._alarms.handed_over(self._controller, self._control)
+        if tick or self._controller.config.first_tick:
+            self._controller = self._make_controller(replace(self._config, first_tick=tick))
         self._control, self._ahead = self._controller.start(), None
         self._joining = Rest() if tick > 0 and self._controller.kind.predicts else None
 
@@ -261,11 +263,13 @@ class Station:
     def _take_over(self, tick: int, rest: Rest) -> None:
         """From the pose at which the robot stands, with nothing but standstill in flight."""
         x, P = prior(rest, self._config.model)
-        if is_far(x.tolist(), self._config.law.goal):
+        if is_far(x.tolist(), self._config.goal):
             self._stand_still(tick)
             self._end_diverged(tick)
             return
-        config = replace(self._config, initial_estimate=x, initial_covariance=P)
+        config = replace(
+            self._config, initial_estimate=x, initial_covariance=P, first_tick=rest.tick
+        )
         self._alarms.handed_over(self._controller, self._control)
         self._controller = self._make_controller(config)
         self._control = self._controller.start()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from laglab_control import Controller, Law, Measured, StationConfig
+from laglab_control import Controller, Measured, SpeedLimits, StationConfig
 
 Array = NDArray[np.float64]
 
@@ -51,7 +51,7 @@ class Simulate(Protocol):
         n: int = ...,
         m: int = ...,
         p0: float = ...,
-        law: Law = ...,
+        limits: SpeedLimits = ...,
         noise: int | None = ...,
         x0: Array | None = ...,
         ticks: int = ...,
@@ -71,14 +71,14 @@ def _simulate(
     n: int = 10,
     m: int = 20,
     p0: float = 1e-4,
-    law: Law = Law(),  # noqa: B008 frozen
+    limits: SpeedLimits = SpeedLimits(),  # noqa: B008 frozen
     noise: int | None = None,
     x0: Array | None = None,
     ticks: int = 1000,
 ) -> Record:
     config = StationConfig(
         estimator=estimator,
-        law=law,
+        limits=limits,
         initial_estimate=start if x0 is None else x0,
         initial_covariance=np.eye(3) * p0,
         command_delay=n,

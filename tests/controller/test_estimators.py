@@ -8,13 +8,13 @@ from laglab_control import (
     Applied,
     DelayedEkf,
     Ekf,
-    Law,
     LiteralPopf,
     Measured,
     Popf,
     ReplayedInputs,
     RigidMotions,
     RobotModel,
+    SpeedLimits,
     constant_delay,
     replay,
 )
@@ -28,7 +28,9 @@ P0 = np.eye(3) * 1e-3
 @pytest.fixture
 def record(simulate):
     """A noisy drive of 300 ticks to replay."""
-    return simulate("delayed-ekf", noise=5, ticks=300, p0=1e-3, law=Law(v_max=2, omega_max=3))
+    return simulate(
+        "delayed-ekf", noise=5, ticks=300, p0=1e-3, limits=SpeedLimits(v_max=2, omega_max=3)
+    )
 
 
 def run(estimator, record, m):

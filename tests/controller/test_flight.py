@@ -5,12 +5,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from laglab_control import Controller, Echo, Law, Measured, RobotModel, StationConfig
+from laglab_control import Controller, Echo, Measured, PolarLaw, RobotModel, StationConfig
 from laglab_protocol import NO_COMMAND, Measurement, Receiver, Sender, Tick, frames_in
 from laglab_station import Station
 
 START = (-3.0, -3.0, 0.0)
-LAW = Law()
+LAW = PolarLaw()
 
 
 class Link:

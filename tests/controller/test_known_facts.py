@@ -5,7 +5,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from laglab_control import Controller, Law, Measured, StationConfig
+from laglab_control import Controller, Measured, PolarLaw, SpeedLimits, StationConfig
 
 FIG7 = {"start": (-1.5, -2.0, np.pi / 2), "n": 15, "m": 25}
 
@@ -15,7 +15,7 @@ def test_fig4_converges(simulate):
 
 
 def test_fig5_with_its_limits_goes_near_but_its_heading_does_not_settle(simulate):
-    record = simulate("raw", law=Law(v_max=2.0, omega_max=1.7))
+    record = simulate("raw", limits=SpeedLimits(v_max=2.0, omega_max=1.7))
     assert not record.converged()
     assert np.hypot(*record.poses[-1, :2]) < 0.06
     assert np.ptp(record.poses[-200:, 2]) > 0.3
@@ -73,7 +73,7 @@ def test_delays_are_exact_for_every_pair(simulate, n, m, name):
 @pytest.mark.parametrize("n", [0, 1, 10])
 def test_the_command_is_made_for_the_moment_it_comes_into_force(n):
     """Without noise the law must see the pose of n ticks later (29)."""
-    start, law = (-2.0, -1.0, 0.4), Law()
+    start, law = (-2.0, -1.0, 0.4), PolarLaw()
     config = StationConfig(estimator="popf", law=law, initial_estimate=start, command_delay=n)
     controller = Controller(config)
     control = controller.answer(controller.start(), [])
@@ -84,7 +84,7 @@ def test_the_command_is_made_for_the_moment_it_comes_into_force(n):
         poses.append(config.model.f(poses[k], sent[k]))
         control = controller.answer(controller.advance(control), [Measured(k + 1, poses[k + 1])])
     for k in range(60 - n):
-        v, omega, _ = law.drive(poses[k + n], at_goal=False)
+        v, omega, _ = law.drive(poses[k + n], (k + n) * 0.01, None)
         assert sent[k + n] == pytest.approx([v, omega], abs=1e-9)
 
 

@@ -8,7 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from laglab_control import FAR, ConfigError, ControlError, Law, RobotModel, StationConfig
+from laglab_control import (
+    FAR,
+    ConfigError,
+    ControlError,
+    PolarLaw,
+    RobotModel,
+    SpeedLimits,
+    StationConfig,
+)
 
 NAN, INF = float("nan"), float("inf")
 NOT_POSITIVE = [0.0, -1.0, NAN, INF, -INF, True, "3", [1.0], 10**400]
@@ -27,8 +35,11 @@ NO_COVARIANCE = {
 @pytest.mark.parametrize(
     ("made", "field"),
     [
-        *((Law, name) for name in ("gamma", "lambda_", "h", "v_max", "omega_max")),
-        (Law, "goal_tolerance"),
+        *((PolarLaw, name) for name in ("gamma", "lambda_", "h", "goal_tolerance")),
+        *(
+            (SpeedLimits, name)
+            for name in ("v_max", "omega_max", "caution", "accel_max", "alpha_max")
+        ),
         *((RobotModel, name) for name in ("sample_time", "wheel_radius", "track")),
     ],
 )
@@ -40,14 +51,14 @@ def test_what_must_be_positive(made, field, value):
 
 
 def test_none_switches_a_limit_off_and_is_no_gain():
-    assert Law(v_max=None).v_max is None
+    assert SpeedLimits(v_max=None).v_max is None
     with pytest.raises(ConfigError, match="gamma must be a finite number above 0, not None"):
-        Law(gamma=None)
+        PolarLaw(gamma=None)
 
 
 @pytest.mark.parametrize("value", [1, 0.5, np.float64(2.0), np.float32(2.0), Fraction(1, 3)])
 def test_any_positive_number_will_do(value):
-    assert Law(gamma=value).gamma == value
+    assert PolarLaw(gamma=value).gamma == value
 
 
 @pytest.mark.parametrize("value", [-1, 1.5, 3.0, True, "3", NAN], ids=repr)
@@ -81,17 +92,17 @@ def test_every_covariance_will_do_also_a_singular_one(root, scale):
 @pytest.mark.parametrize("wrong", [(NAN, 0.0, 0.0), (0.0, 0.0, INF), (0.0, 0.0), "there"])
 def test_a_pose_is_three_finite_numbers(wrong):
     with pytest.raises(ConfigError, match=r"^goal must "):
-        Law(goal=wrong)
+        PolarLaw(goal=wrong)
     with pytest.raises(ConfigError, match=r"^initial_estimate must "):
         StationConfig(initial_estimate=wrong)
 
 
 def test_a_start_that_no_run_leads_to_the_goal_from():
     near, beyond = (5000.0 - FAR, 5000.0, 0.0), (5000.0 - FAR - 1.0, 5000.0, 0.0)
-    law = Law(goal=(5000.0, 5000.0, 0.0))
-    StationConfig(law=law, initial_estimate=near)
+    goal = (5000.0, 5000.0, 0.0)
+    StationConfig(goal=goal, initial_estimate=near)
     with pytest.raises(ConfigError, match=r"^initial_estimate must be within 1000 m of the goal"):
-        StationConfig(law=law, initial_estimate=beyond)
+        StationConfig(goal=goal, initial_estimate=beyond)
 
 
 def test_who_catches_either_tree_catches_it():

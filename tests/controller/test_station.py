@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from laglab_control import ConfigError, Law, RobotModel, StationConfig
+from laglab_control import ConfigError, PolarLaw, RobotModel, StationConfig
 from laglab_protocol import (
     NO_COMMAND,
     Command,
@@ -66,7 +66,7 @@ def test_a_tick_is_answered_with_estimate_and_command():
     robot = Robot(make())
     estimate, command = robot.tick(0)
     assert estimate == Estimate(*START, 1e-4, 0, 0, 1e-4, 0, 1e-4, tick=0)
-    v, omega, _ = Law().drive(np.array(START), at_goal=False)
+    v, omega, _ = PolarLaw().drive(START, 0.0, None)
     assert command == Command(v, omega, 0, 1, 1, estimates=1)
 
 
@@ -75,7 +75,7 @@ def test_raw_sends_no_estimate_and_stands_still_until_the_first_measurement():
     assert robot.tick(0) == [Command(0, 0, 0, 1, 1, estimates=0)]
     pose = (-1.0, 2.0, 0.3)
     (command,) = robot.tick(1, (0, pose))
-    assert command.speeds == Law().drive(np.array(pose), at_goal=False)[:2]
+    assert command.speeds == PolarLaw().drive(pose, 0.0, None)[:2]
 
 
 def test_the_input_applied_is_the_command_sent_n_ticks_earlier():
@@ -178,7 +178,8 @@ BEGIN = (4100.0, 5000.0, 0.0)
     [(5999.0, False), (6001.0, True), (3101.0, False), (3099.0, True), (0.0, True)],
 )
 def test_a_kilometre_from_both_goal_and_first_estimate_is_diverged(x, diverged):
-    config = StationConfig(estimator="raw", law=Law(goal=GOAL), initial_estimate=BEGIN)
+    law = PolarLaw(goal=GOAL)
+    config = StationConfig(estimator="raw", law=law, goal=GOAL, initial_estimate=BEGIN)
     robot = Robot(Station(config))
     robot.tick(0, (0, (x, 5000.0, 0.0)))
     assert (robot.station.outcome is not None) is diverged

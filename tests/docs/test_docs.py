@@ -14,7 +14,7 @@ import typer
 from laglab.command import app
 from laglab.live import spelled_out
 from laglab.results.shadows import COLUMNS
-from laglab_control import Erratum, Law, delay_margin
+from laglab_control import Erratum, PolarLaw, delay_margin
 from laglab_control.estimators.popf import delay_limit
 from laglab_gateway import ROWS, TraceRow
 
@@ -122,7 +122,7 @@ def test_the_delay_limits_are_those_of_the_code() -> None:
 def test_the_delay_margins_are_those_of_the_code() -> None:
     for gains, *margins in table(THEORY, "The loop's delay margin"):
         lambda_, h, gamma = (float(gain) for gain in gains.split(","))
-        law = Law(lambda_=lambda_, h=h, gamma=gamma, goal_tolerance=0.03)
+        law = PolarLaw(lambda_=lambda_, h=h, gamma=gamma, goal_tolerance=0.03)
         assert [int(margin) for margin in margins] == list(delay_margin(law, 0.01))
 
 

@@ -18,7 +18,7 @@ from laglab.scenario import load
 def test_the_loop_by_hand_brings_its_robots_to_the_goal() -> None:
     lab = load("lab", {"estimator.initial_covariance": 1e-4})
     config = station_config(lab)
-    situation = Situation(config.model, config.law, 10, 20, ticks=1200)
+    situation = Situation(config, 10, 20, ticks=1200)
     starts = np.tile(lab.start, (5, 1))
     ends = many_by_hand(starts, 1e-4, situation)
     assert at_goal(ends, lab.goal).all()

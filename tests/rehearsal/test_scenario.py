@@ -13,19 +13,19 @@ from laglab.runs.robot_side import gateway_config
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario, assignment, changed, load, shipped
 from laglab.scenario.keys import ANY, rows
-from laglab_control import ConfigError, Law, RobotModel, StationConfig
+from laglab_control import ConfigError, PolarLaw, RobotModel, SpeedLimits, StationConfig
 from laglab_gateway import Impairments, Safety
 
 SHARED: list[tuple[str, Callable[..., object], str]] = [
     ("sample_time", RobotModel, "sample_time"),
     ("plant.wheel_radius", RobotModel, "wheel_radius"),
     ("plant.track", RobotModel, "track"),
-    ("law.gamma", Law, "gamma"),
-    ("law.lambda", Law, "lambda_"),
-    ("law.h", Law, "h"),
-    ("law.v_max", Law, "v_max"),
-    ("law.omega_max", Law, "omega_max"),
-    ("law.goal_tolerance", Law, "goal_tolerance"),
+    ("law.gamma", PolarLaw, "gamma"),
+    ("law.lambda", PolarLaw, "lambda_"),
+    ("law.h", PolarLaw, "h"),
+    ("law.v_max", SpeedLimits, "v_max"),
+    ("law.omega_max", SpeedLimits, "omega_max"),
+    ("law.goal_tolerance", PolarLaw, "goal_tolerance"),
     ("link.command_delay", StationConfig, "command_delay"),
     ("link.command.loss", Impairments, "loss"),
     ("safety.ramp", Safety, "ramp"),
@@ -157,7 +157,7 @@ def test_the_distance_from_start_to_goal_is_what_counts() -> None:
     with pytest.raises(ScenarioError, match=r"estimator\.initial_estimate: must be within 1000 m"):
         load("lab", {"estimator.initial_covariance": 1e12})
     with pytest.raises(ConfigError):
-        StationConfig(law=Law(goal=(5000.0, 5000.0, 0.0)))
+        StationConfig(goal=(5000.0, 5000.0, 0.0))
 
 
 def test_all_that_ship_are_short_and_whole() -> None:

@@ -87,7 +87,11 @@ ESTIMATOR: Keys = {
     "guard": st.booleans(),
 }
 LAW: Keys = dict.fromkeys(
-    ("gamma", "lambda", "h", "v_max", "omega_max", "goal_tolerance", "caution"), POSITIVE
+    (
+        *("gamma", "lambda", "h", "goal_tolerance"),
+        *("v_max", "omega_max", "caution", "accel_max", "alpha_max"),
+    ),
+    POSITIVE,
 )
 SAFETY: Keys = {
     **dict.fromkeys(("v_limit", "omega_limit"), POSITIVE),

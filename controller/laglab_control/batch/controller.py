@@ -15,7 +15,7 @@ from laglab_control.batch.estimators import (
     TurnedEstimate,
 )
 from laglab_control.batch.guard import Found
-from laglab_control.batch.law import Demands, drive, slowed, stand_still
+from laglab_control.batch.law import Demands, drive, limited, polar_law, stand_still
 from laglab_control.batch.matrices import Symmetric
 from laglab_control.batch.robots import Robots, diverged, prior_of
 from laglab_control.batch.rows import Pose, Speeds
@@ -23,6 +23,7 @@ from laglab_control.batch.turning import Turned, TurnedWay, Turning, nowhere, tu
 from laglab_control.controller import StationConfig
 from laglab_control.errors import ConfigError
 from laglab_control.estimators.family import estimator_kind
+from laglab_control.laws import PolarLaw
 from laglab_control.model import Matrix
 from laglab_control.past.sliding import SlidingProduct
 
@@ -54,7 +55,7 @@ class BatchController:
     none is refused. At tick 0 `answer(start(), ...)`; at every later tick
     `answer(advance(control), ...)`.
 
-    Raises ConfigError when there is no such estimator for many robots, or R is not diagonal.
+    Raises ConfigError when there is no such estimator or law for many robots, or R is not diagonal.
     """
 
     config: StationConfig
@@ -68,7 +69,7 @@ class BatchController:
         kind = self.config.estimator
         if kind not in BATCHED:
             raise ConfigError(f"there is no {kind} for many robots, but {', '.join(BATCHED)}")
-        _ = self._robots  # refuses what it cannot be
+        _ = self._robots, self._law  # refuses what it cannot be
 
     @property
     def robots(self) -> int:
@@ -78,6 +79,10 @@ class BatchController:
     @cached_property
     def _robots(self) -> Robots:
         return Robots(self.config.model)
+
+    @cached_property
+    def _law(self) -> PolarLaw:
+        return polar_law(self.config)
 
     @cached_property
     def _turning(self) -> Turning:
@@ -127,7 +132,7 @@ class BatchController:
         (pose, _), P = estimate
         if P is not None and found is not None:
             P = guard.claimed(P, found)
-        lost = lost | diverged(pose, self.config.law.goal, self.initial_estimates)
+        lost = lost | diverged(pose, self.config.goal, self.initial_estimates)
         demands = self._command(estimate._replace(P=P), in_flight, last, lost)
         return BatchControl(state, found, in_flight, demands, lost, pose, P)
 
@@ -138,12 +143,11 @@ class BatchController:
         last: Demands,
         lost: NDArray[np.bool_],
     ) -> Demands:
-        (pose, P), law = estimate, self.config.law
+        (pose, P), config = estimate, self.config
         there = self._turning.joined(pose, in_flight.product) if self._predicts else pose
         heading = None if self.exact else there.heading
-        speeds, at_goal = drive(law, there.way, last.at_goal, heading)
-        if P is not None:
-            speeds = slowed(law, speeds, P)
+        speeds, at_goal = drive(self._law, there.way, last.at_goal, heading)
+        speeds = limited(config.limits, speeds, P, last.speeds, config.model.sample_time)
         if lost.any():
             speeds = Speeds(*[np.where(lost, 0.0, each) for each in speeds])
         return Demands(speeds, at_goal)

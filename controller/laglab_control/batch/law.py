@@ -8,10 +8,12 @@ from numpy.typing import NDArray
 
 from laglab_control.batch.matrices import Symmetric
 from laglab_control.batch.rows import Heading, Pose, Row, Speeds, headings, wrapped
-from laglab_control.laws.aicardi import Law
+from laglab_control.controller import StationConfig
+from laglab_control.errors import ConfigError
+from laglab_control.laws import PolarLaw, SpeedLimits
 
-# numpy's own differ from those of `Law` in the last bit. Where there is no noise a robot comes so
-# near to its goal that the last bit decides where it looks.
+# numpy's own differ from those of `PolarLaw` in the last bit. Where there is no noise a robot comes
+# so near to its goal that the last bit decides where it looks.
 _hypot, _atan2 = np.frompyfunc(math.hypot, 2, 1), np.frompyfunc(math.atan2, 2, 1)
 
 
@@ -33,9 +35,9 @@ def stand_still(robots: int) -> Demands:
 
 
 def drive(
-    law: Law, pose: Pose, at_goal: NDArray[np.bool_], heading: Heading | None = None
+    law: PolarLaw, pose: Pose, at_goal: NDArray[np.bool_], heading: Heading | None = None
 ) -> Demands:
-    """`Law.drive`, to the last bit; given the poses' headings it is faster, to the last but one."""
+    """`PolarLaw.drive`, to the last bit; faster, given the poses' headings, to the last but one."""
     x, y, theta = pose
     x_goal, y_goal, theta_goal = law.goal
     offset = x_goal - x, y_goal - y
@@ -51,18 +53,37 @@ def drive(
     if at_goal.any():
         turn = law.lambda_ / 2 * wrapped(theta_goal - theta)
         speeds = Speeds(np.where(at_goal, 0.0, speeds.v), np.where(at_goal, turn, speeds.omega))
-    return Demands(_clamped(law, speeds), at_goal)
+    return Demands(speeds, at_goal)
 
 
-def slowed(law: Law, speeds: Speeds, P: Symmetric) -> Speeds:
-    """`Law.slowed`."""
-    if law.caution is None:
-        return speeds
+def limited(
+    limits: SpeedLimits, asked: Speeds, P: Symmetric | None, last: Speeds, sample_time: float
+) -> Speeds:
+    """`SpeedLimits.limited`."""
+    v, omega = _clamp(asked.v, limits.v_max), _clamp(asked.omega, limits.omega_max)
+    if P is not None and limits.caution is not None:
+        share = _share(limits.caution, P)
+        v, omega = share * v, share * omega
+    if limits.accel_max is not None:
+        v = last.v + _clamp(v - last.v, limits.accel_max * sample_time)
+    if limits.alpha_max is not None:
+        omega = last.omega + _clamp(omega - last.omega, limits.alpha_max * sample_time)
+    return Speeds(v, omega)
+
+
+def _share(caution: float, P: Symmetric) -> Row:
     variance = np.maximum(P.xx, P.yy)
-    if not (variance > law.caution**2).any():
-        return speeds
-    share = np.where(variance > law.caution**2, law.caution / np.sqrt(variance), 1.0)
-    return Speeds(share * speeds.v, share * speeds.omega)
+    wide = variance > caution**2
+    if not wide.any():
+        return np.ones_like(variance)
+    return np.where(wide, caution / np.sqrt(variance), 1.0)
+
+
+def polar_law(config: StationConfig) -> PolarLaw:
+    """The law. Raises ConfigError for any other: only this one is there for many robots."""
+    if not isinstance(config.law, PolarLaw):
+        raise ConfigError(f"there is no {type(config.law).__name__} for many robots, but PolarLaw")
+    return config.law
 
 
 def _nearly_polar(dx: Row, dy: Row) -> tuple[Row, Row]:
@@ -76,17 +97,13 @@ def _seen(offset: tuple[Row, Row], rho: Row, heading: Heading) -> Heading:
     return (dx * c + dy * s) * scale, (dy * c - dx * s) * scale
 
 
-def _polar(law: Law, rho: Row, alpha: Row, ahead: Heading, phi: Row) -> Speeds:
+def _polar(law: PolarLaw, rho: Row, alpha: Row, ahead: Heading, phi: Row) -> Speeds:
     """(4); `ahead`: cosine and sine of alpha."""
     cosine, sine = ahead
     forward = law.gamma * cosine
     straight = alpha == 0.0
     sinc = (sine + straight) / (alpha + straight)
     return Speeds(forward * rho, law.lambda_ * alpha + forward * sinc * (alpha + law.h * phi))
-
-
-def _clamped(law: Law, speeds: Speeds) -> Speeds:
-    return Speeds(_clamp(speeds.v, law.v_max), _clamp(speeds.omega, law.omega_max))
 
 
 def _clamp(value: Row, limit: float | None) -> Row:

@@ -8,7 +8,7 @@ import math
 from typing import NamedTuple
 
 from laglab_control.errors import ConfigError
-from laglab_control.laws.aicardi import Law
+from laglab_control.laws.polar import PolarLaw
 from laglab_control.limits import Limit
 
 LONGEST = 100_000
@@ -24,7 +24,7 @@ class DelayMargin(NamedTuple):
     """Of the turn inside the goal tolerance; None without one."""
 
 
-def delay_margin(law: Law, sample_time: float) -> DelayMargin:
+def delay_margin(law: PolarLaw, sample_time: float) -> DelayMargin:
     """Of the law's loops at the goal, without limits, every `sample_time` [s]. Raises ConfigError.
 
     What lies beyond `approach` does not settle by (4). With a goal tolerance the robot may still
@@ -36,14 +36,14 @@ def delay_margin(law: Law, sample_time: float) -> DelayMargin:
     return DelayMargin(_longest_approach(law, sample_time), hold)
 
 
-def _longest_approach(law: Law, sample_time: float) -> int:
+def _longest_approach(law: PolarLaw, sample_time: float) -> int:
     delay = 0
     while delay < LONGEST and _approach_settles(law, sample_time, delay):
         delay += 1
     return delay - 1
 
 
-def _approach_settles(law: Law, sample_time: float, delay: int) -> bool:
+def _approach_settles(law: PolarLaw, sample_time: float, delay: int) -> bool:
     """Whether (z - 1)(z - 1 - s) z^d + Ts ((lambda + gamma)(z - 1) + gamma h s) has all its roots
     inside the unit circle. For given s there is one angle at which they cross it."""
     ratio = _shrinking(law.gamma * sample_time, delay)

@@ -18,10 +18,10 @@ from laglab_control import (
     DelayedEkf,
     Echo,
     Estimator,
-    Law,
     LiteralPopf,
     ReplayedInputs,
     RobotModel,
+    SpeedLimits,
     StationConfig,
     constant_delay,
 )
@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 OURS = ("ekf", "popf", "popf-exact", "delayed-ekf", "calibrating-ekf")
 FILTERPY = "filterpy's EKF"
 GUARDED = "delayed-ekf, guarded"
-STANDING = Law(v_max=1e-9, omega_max=1e-9)
+STANDING = SpeedLimits(v_max=1e-9, omega_max=1e-9)
 """The measurements are of a robot that stands still: faster commands would contradict them."""
 START = np.zeros(3)
 P_0 = np.eye(3) * 1e-6
@@ -135,7 +135,7 @@ def _estimator_tick(estimator: Estimator[Any], drive: Drive, m: int) -> float:
 def _controller_tick(name: str, guard: bool, drive: Drive, m: int) -> float:
     config = StationConfig(
         estimator=name,
-        law=STANDING,
+        limits=STANDING,
         initial_estimate=START,
         initial_covariance=P_0,
         command_delay=m,

@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab_control import Law, RobotModel
+from laglab_control import RobotModel, StationConfig
+from laglab_control.batch import polar_law
 
 Array = NDArray[np.float64]
 
@@ -18,8 +19,7 @@ Array = NDArray[np.float64]
 class Situation(NamedTuple):
     """Of all robots alike."""
 
-    model: RobotModel
-    law: Law
+    config: StationConfig
     n: int
     m: int
     ticks: int
@@ -27,7 +27,8 @@ class Situation(NamedTuple):
 
 def many_by_hand(starts: Array, P_0: float, situation: Situation) -> Array:
     """The poses (robots, 3) at the end."""
-    model, law, n, m, ticks = situation
+    config, n, m, ticks = situation
+    model = config.model
     rng = np.random.default_rng(1)
     x, there = starts.copy(), starts.copy()
     P = np.tile(P_0 * np.eye(3), (len(x), 1, 1))
@@ -44,7 +45,7 @@ def many_by_hand(starts: Array, P_0: float, situation: Situation) -> Array:
         ahead = there
         for u in inputs:
             ahead = _moved(model, ahead, u)
-        u, at_goal = _law(law, ahead, at_goal)
+        u, at_goal = _law(config, ahead, at_goal)
         inputs.append(u)
         x = _moved(model, x, _slipping(model, inputs[-1 - n], rng))
     return x
@@ -81,7 +82,10 @@ def _corrected(model: RobotModel, x: Array, P: Array, z: Array) -> tuple[Array, 
     return x + np.einsum("rij,rj->ri", K, innovation), P - K @ P
 
 
-def _law(law: Law, x: Array, at_goal: NDArray[np.bool_]) -> tuple[Array, NDArray[np.bool_]]:
+def _law(
+    config: StationConfig, x: Array, at_goal: NDArray[np.bool_]
+) -> tuple[Array, NDArray[np.bool_]]:
+    law, limits = polar_law(config), config.limits
     dx, dy = law.goal[0] - x[:, 0], law.goal[1] - x[:, 1]
     rho, psi = np.hypot(dx, dy), np.arctan2(dy, dx)
     alpha, phi = _wrapped(psi - x[:, 2]), _wrapped(psi - law.goal[2])
@@ -91,7 +95,7 @@ def _law(law: Law, x: Array, at_goal: NDArray[np.bool_]) -> tuple[Array, NDArray
     v = np.where(at_goal, 0.0, forward * rho)
     turn = law.lambda_ * alpha + forward * np.sinc(alpha / np.pi) * (alpha + law.h * phi)
     turn = np.where(at_goal, law.lambda_ / 2 * _wrapped(law.goal[2] - x[:, 2]), turn)
-    v_max, omega_max = law.v_max or np.inf, law.omega_max or np.inf
+    v_max, omega_max = limits.v_max or np.inf, limits.omega_max or np.inf
     return np.stack((v.clip(-v_max, v_max), turn.clip(-omega_max, omega_max)), axis=1), at_goal
 
 

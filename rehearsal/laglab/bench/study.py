@@ -107,9 +107,7 @@ def _one_by_one(scenarios: Sequence[Scenario]) -> None:
 def _by_hand(scenarios: Sequence[Scenario], ticks: int) -> None:
     config, link = station_config(scenarios[0]), scenarios[0].link
     starts = np.array([each.first_estimate() for each in scenarios])
-    situation = Situation(
-        config.model, config.law, link.command_delay, link.measurement_delay, ticks
-    )
+    situation = Situation(config, link.command_delay, link.measurement_delay, ticks)
     many_by_hand(starts, scenarios[0].estimator.initial_covariance, situation)
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from laglab.scenario import Scenario
-from laglab_control import Controller, Law, RobotModel, StationConfig
+from laglab_control import Controller, PolarLaw, RobotModel, SpeedLimits, StationConfig
 from laglab_protocol import STATION_COMPONENT, STATION_SYSTEM, Codec, Receiver, Sender, Settings
 from laglab_station import Station
 
@@ -32,7 +32,9 @@ def station_config(scenario: Scenario) -> StationConfig:
     return StationConfig(
         estimator=scenario.estimator.kind,
         model=robot_model(scenario),
-        law=Law(goal=scenario.goal, **dict(scenario.law)),
+        law=PolarLaw(goal=scenario.goal, **scenario.law.of(PolarLaw)),
+        limits=SpeedLimits(**scenario.law.of(SpeedLimits)),
+        goal=scenario.goal,
         initial_estimate=scenario.first_estimate(),
         initial_covariance=scenario.estimator.initial_covariance * np.eye(3),
         command_delay=scenario.link.n,

@@ -14,7 +14,7 @@ from msgspec.structs import asdict
 
 from laglab.runs.inline import InlineLink
 from laglab.runs.plant import FmuPlant
-from laglab_control import Law, StationConfig
+from laglab_control import PolarLaw, SpeedLimits, StationConfig
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
     Gateway,
@@ -47,8 +47,8 @@ FOREVER = 10**9
 
 
 def station() -> Station:
-    law = Law(v_max=1.0, omega_max=1.7, goal_tolerance=0.03)
-    return Station(StationConfig(estimator="raw", law=law, initial_estimate=START))
+    law, limits = PolarLaw(goal_tolerance=0.03), SpeedLimits(v_max=1.0, omega_max=1.7)
+    return Station(StationConfig(estimator="raw", law=law, limits=limits, initial_estimate=START))
 
 
 class Listened(Services):

@@ -14,7 +14,7 @@ from laglab_control.batch.impaired.paper import Popf
 from laglab_control.batch.impaired.record import Record
 from laglab_control.batch.impaired.sent import Sent
 from laglab_control.batch.impaired.timetable import Timetable, Tokens
-from laglab_control.batch.law import drive, slowed, stand_still
+from laglab_control.batch.law import drive, limited, polar_law, stand_still
 from laglab_control.batch.matrices import Symmetric
 from laglab_control.batch.robots import Estimate, Robots, diverged, prior_of
 from laglab_control.batch.rows import Belief, Pose, Speeds, headings
@@ -51,7 +51,7 @@ class ImpairedController:
     """As many controllers as there are initial estimates (3, robots) [m, m, rad], all else alike.
 
     `timetable` says what reaches whom when. `answer` once a tick, from tick 0 on.
-    Raises ConfigError when there is no such estimator for many robots, or R is not diagonal.
+    Raises ConfigError when there is no such estimator or law for many robots, or R is not diagonal.
     """
 
     def __init__(
@@ -62,7 +62,7 @@ class ImpairedController:
                 f"there is no {config.estimator} for many robots, but {', '.join(IMPAIRED)}"
             )
         robots, count = Robots(config.model), timetable.robots
-        self._config, self._timetable = config, timetable
+        self._config, self._law, self._timetable = config, polar_law(config), timetable
         self._began = np.array(initial_estimates)
         self._predicts = estimator_kind(config.estimator).predicts
         self._sent = Sent(robots, count, timetable.ticks, timetable.reach)
@@ -94,7 +94,7 @@ class ImpairedController:
             P = P if self._watch is None else self._watch.claimed(P)
             P = self._doubts.added(P, pose, tick)
         there = ~np.isnan(pose.theta) if P is None else np.True_
-        self._lost = self._lost | there & diverged(pose, self._config.law.goal, self._began)
+        self._lost = self._lost | there & diverged(pose, self._config.goal, self._began)
         self._command(Estimate(pose, P), there & ~self._lost)
         self._sent.push(tick, self._last.speeds)
         return Answers(pose, P, self._last.speeds, self._lost)
@@ -105,13 +105,13 @@ class ImpairedController:
         return self._sent.inputs(Tokens(commands[self._tick], shares[self._tick]))
 
     def _command(self, estimate: Estimate, driven: NDArray[np.bool_]) -> None:
-        (pose, P), law, tick = estimate, self._config.law, self._tick
+        (pose, P), config, tick = estimate, self._config, self._tick
         if self._predicts:
             ahead = self._sent.way(tick - self._timetable.delay[tick], np.full(len(driven), tick))
             pose = joined_along(headings(pose.theta), pose, ahead)
-        speeds, at_goal = drive(law, pose, self._last.at_goal)
-        if P is not None:
-            speeds = slowed(law, speeds, P)
+        speeds, at_goal = drive(self._law, pose, self._last.at_goal)
+        last, sample_time = self._last.speeds, config.model.sample_time
+        speeds = limited(config.limits, speeds, P, last, sample_time)
         if not driven.all():
             speeds = Speeds(*[np.where(driven, each, 0.0) for each in speeds])
             at_goal = at_goal & driven

@@ -8,9 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario, changed
-from laglab_control import delay_margin
+from laglab_control import PolarLaw, delay_margin
 
 Array = NDArray[np.float64]
 DELAYS = ("link.command_delay", "link.measurement_delay")
@@ -62,7 +61,7 @@ def _ticks(base: Scenario, point: Mapping[str, float]) -> float:
 
 def _margins(base: Scenario, gains: Mapping[str, float]) -> tuple[float, float]:
     scenario = changed(base, gains)
-    approach, hold = delay_margin(station_config(scenario).law, scenario.sample_time)
+    approach, hold = delay_margin(PolarLaw(**scenario.law.of(PolarLaw)), scenario.sample_time)
     return approach, np.nan if hold is None else hold
 
 

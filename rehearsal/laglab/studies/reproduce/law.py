@@ -10,7 +10,7 @@ from laglab.results.numbers import HEADING_BOUND, goal_errors, robot_pose
 from laglab.scenario import load
 from laglab.studies.reproduce.claim import Claim, Evidence
 from laglab.studies.reproduce.showing import N, on_grid, png
-from laglab_control import Law, delay_margin
+from laglab_control import PolarLaw, delay_margin
 from laglab_fmu import RobotParameters
 
 STARTS = 12
@@ -51,7 +51,7 @@ def late_commands() -> Evidence:
         _, theta_error = goal_errors(robot_pose(done.trace), done.scenario.goal)
         swing.append(float(np.abs(theta_error[-ONE_SECOND:]).max()))
         converged.append(done.summary.converged)
-    margin = delay_margin(Law(), load("fig4").sample_time).approach
+    margin = delay_margin(PolarLaw(), load("fig4").sample_time).approach
     largest = converged.index(False) - 1
     return Evidence({"largest": largest, "margin": margin}, _swings(swing, margin))
 

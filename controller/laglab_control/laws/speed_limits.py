@@ -1,0 +1,53 @@
+"""What limits the commands of every law, before they are sent: so the estimator knows it."""
+
+import math
+from dataclasses import dataclass
+
+from laglab_control.laws.interface import Demand
+from laglab_control.limits import Positive, check
+from laglab_control.model import Matrix
+
+
+@dataclass(frozen=True)
+class SpeedLimits:
+    """None switches each of them off, as in the paper.
+
+    `v_max` [m/s] and `omega_max` [rad/s] clamp the speeds; `caution` [m] is the standard deviation
+    of the estimated position above which the robot drives the more slowly; `accel_max` [m/s^2] and
+    `alpha_max` [rad/s^2] clamp how far a command may be from the last one. Raises ConfigError,
+    naming the field, when one cannot be.
+    """
+
+    v_max: Positive | None = None
+    omega_max: Positive | None = None
+    caution: Positive | None = None
+    accel_max: Positive | None = None
+    alpha_max: Positive | None = None
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def limited(self, asked: Demand, P: Matrix | None, last: Demand, sample_time: float) -> Demand:
+        """What is sent after `last` instead of what was `asked`.
+
+        `P` (3, 3) is the covariance that is claimed for the pose; None: nothing is.
+        """
+        v, omega = _clamp(asked.v, self.v_max), _clamp(asked.omega, self.omega_max)
+        if P is not None and (share := self._share(P)) < 1:
+            v, omega = share * v, share * omega
+        if self.accel_max is not None:
+            v = last.v + _clamp(v - last.v, self.accel_max * sample_time)
+        if self.alpha_max is not None:
+            omega = last.omega + _clamp(omega - last.omega, self.alpha_max * sample_time)
+        return Demand(v, omega, asked.memory)
+
+    def _share(self, P: Matrix) -> float:
+        """As slow as the claimed covariance makes advisable."""
+        if self.caution is None:
+            return 1.0
+        variance = max(float(P[0, 0]), float(P[1, 1]))
+        return 1.0 if variance <= self.caution**2 else self.caution / math.sqrt(variance)
+
+
+def _clamp(value: float, limit: float | None) -> float:
+    return value if limit is None else min(max(value, -limit), limit)
