@@ -30,14 +30,16 @@ def shadow(
     """Run `config.estimator` beside the commands that were sent; the first tick heard is tick 0.
 
     Measurements are played out as by the station. The law of `config` is not asked. Over ticks that
-    are missing, the last command held. It ends early when the estimate has become infinite.
+    are missing, the last command held, or its plan went on. It ends early when the estimate has
+    become infinite.
     """
     controller = Controller(config)
     control = controller.start()
     first = last = None
     for heard in _played_out(session, playout):
         first, last = (heard.tick, heard.tick) if first is None or last is None else (first, last)
-        for _ in range(heard.tick - last):
+        for lost in range(heard.tick - last):
+            control = controller.unanswered(control) if lost else control
             control = controller.advance(control)
         last = heard.tick
         control = _followed(controller, control, heard, first)
@@ -61,9 +63,12 @@ def _played_out(session: Iterable[SessionTick], bound: int) -> Iterable[SessionT
 
 def _followed(controller: Controller, control: Control, heard: SessionTick, first: int) -> Control:
     """The controller's correction, with the command that was really sent, or the last one."""
-    drive = control.drive
-    if heard.command is not None:
+    if heard.command is None:
+        control = controller.unanswered(control)
+        drive, plan = control.drive, control.plan
+    else:
         drive = Demand(heard.command.v, heard.command.omega)
+        plan = tuple(Demand(v, omega) for v, omega in heard.following)
     with np.errstate(over="ignore", invalid="ignore"):
         control = controller.correct(
             control,
@@ -71,4 +76,4 @@ def _followed(controller: Controller, control: Control, heard: SessionTick, firs
             echoes(heard.measurements, first, heard.tick),
             recalled(heard.recalled, first, heard.tick),
         )
-    return control._replace(drive=drive)
+    return control._replace(drive=drive, plan=plan)

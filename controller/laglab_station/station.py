@@ -121,7 +121,7 @@ class Station:
         self._look_back()
         p50, p99, longest = self._times.quantiles() or (None, None, None)
         return StationReport(
-            n_seen=self._control.flight.command_delay,
+            n_seen=self._control.flight.usual_delay,
             m_seen=self._measurement_delay,
             tick_p50_s=p50,
             tick_p99_s=p99,
@@ -290,11 +290,12 @@ class Station:
         return list(map(self._sender.frame, messages))
 
     def _step(self, tick: int, came: Came) -> None:
-        """On to `tick`; over ticks that were lost on the way the last command is taken to hold,
-        until the robot tells."""
+        """On to `tick`; over ticks that were lost on the way the last command is taken to hold, or
+        its plan to go on, until the robot tells."""
         self._look_back()
         control = self._control
-        for _ in range(0 if self._tick is None else tick - self._tick):
+        for lost in range(0 if self._tick is None else tick - self._tick):
+            control = self._controller.unanswered(control) if lost else control
             control = self._ahead or self._controller.advance(control)
             self._ahead = None
         first = self._first

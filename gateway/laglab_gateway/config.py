@@ -11,7 +11,8 @@ from laglab_protocol import Settings
 class GatewayConfig:
     """Delays n and m [ticks], the tick that ends the run (None: none does), Ts [s], the failsafe;
     the robot's geometry [m], for the station to compare, where it is known; the play-out of
-    commands here, and of measurements at the station [ticks], 0 without.
+    commands here, and of measurements at the station, and for how much longer commands plan
+    [ticks], 0 without.
 
     Raises ConfigError, naming the field, when one cannot be.
     """
@@ -25,6 +26,7 @@ class GatewayConfig:
     track: Positive | None = None
     command_playout: Ticks = 0
     measurement_playout: Ticks = 0
+    plan: Ticks = 0
 
     @property
     def settings(self) -> Settings:
@@ -40,4 +42,5 @@ class GatewayConfig:
             measurement_delay=self.measurement_delay,
             command_playout=self.command_playout,
             measurement_playout=self.measurement_playout,
+            plan=self.plan,
         )

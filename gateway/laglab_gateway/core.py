@@ -78,7 +78,7 @@ class Gateway(RobotSide):
         for command in came.commands:
             self.audit.command.arrived(command.tick, k)
         for planned in came.ready:
-            if self._follow(planned.command, k, safety):
+            if self._follow(planned, k, safety):
                 self.notes.came("command", planned.tick, k, self.elapsed)
         supervised = supervise(self._drive, k, Ts, safety)
         if supervised.mode is not self._drive.mode:

@@ -6,8 +6,10 @@ from typing import NamedTuple
 
 from laglab_gateway.link.channel import Channel
 from laglab_gateway.link.log import LinkRow
-from laglab_gateway.plans import Assembly, Planned
-from laglab_protocol import Command, Plan, Playout, Recall
+from laglab_protocol import Assembly, Command, Plan, Planned, Playout, Recall
+
+MOST_EARLY = 1024
+"""Commands that are meant for later than they come: so many are kept."""
 
 
 class Came(NamedTuple):
@@ -33,6 +35,8 @@ class Incoming:
         self._channel = channel
         self._assembly = Assembly()
         self._playout = Playout[Planned](playout) if playout else None
+        self._early: list[Planned] = []
+        """Meant for later than when they came."""
 
     def push(
         self, elapsed: int, command: Command, plans: Iterable[Plan], recalls: Iterable[Recall]
@@ -58,7 +62,10 @@ class Incoming:
                     came.ready.append(Planned(message))
                 case _:
                     self._put_together(message, came)
-        return came if self._playout is None else self._played_out(self._playout, tick, came)
+        if self._playout:
+            late = self._playout.take(tick, came.ready)
+            came = came._replace(late=late, ready=self._playout.due(tick))
+        return came if not self._early and _are_due(came.ready, tick) else self._held(came, tick)
 
     def _put_together(self, message: Command | Plan, came: Came) -> None:
         if isinstance(message, Command):
@@ -67,17 +74,28 @@ class Incoming:
             came.ready.append(whole)
         came.incomplete.extend(self._assembly.take_given_up())
 
-    def _played_out(self, playout: Playout[Planned], tick: int, came: Came) -> Came:
-        late = playout.take(tick, came.ready)
-        return came._replace(late=late, ready=playout.due(tick))
+    def _held(self, came: Came, tick: int) -> Came:
+        """What is meant for later waits for its time."""
+        waiting = sorted(self._early + came.ready, key=lambda each: each.tick)
+        self._early = [each for each in waiting if not _is_due(each, tick)][-MOST_EARLY:]
+        return came._replace(ready=[each for each in waiting if _is_due(each, tick)])
 
     def clear(self) -> None:
         """Lose all that is on its way, or waits."""
         self._channel.clear()
         self._assembly = Assembly()
+        self._early.clear()
         if self._playout:
             self._playout.clear()
 
     def take_log(self) -> list[LinkRow]:
         """The channel's."""
         return self._channel.take_log()
+
+
+def _is_due(planned: Planned, tick: int) -> bool:
+    return planned.in_force is None or planned.in_force <= tick
+
+
+def _are_due(planned: Iterable[Planned], tick: int) -> bool:
+    return all(_is_due(each, tick) for each in planned)

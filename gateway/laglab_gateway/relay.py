@@ -22,19 +22,18 @@ from laglab_gateway.services import RobotState, Services
 from laglab_gateway.side import RobotSide
 from laglab_protocol import (
     MAV_SEVERITY_ERROR,
-    ROBOT_COMPONENT,
-    ROBOT_SYSTEM,
     STATION_COMPONENT,
     STATION_HEARTBEAT,
     STATION_SYSTEM,
     UNANNOUNCED,
     UNKNOWN_DELAY,
     Applied,
-    Command,
     End,
     EndReason,
     Frame,
     Measurement,
+    Message,
+    Planned,
     Recall,
     Restart,
     Sender,
@@ -182,8 +181,8 @@ class Relay(RobotSide):
         for asked in came.recalls:
             self._remember(asked)
         for planned in came.ready:
-            if self._follow(planned.command, self.tick + 1, safety):
-                frames += map(self._to_robot.frame, [*self._asks, self._allowed(planned.command)])
+            if self._follow(planned, self.tick + 1, safety):
+                frames += map(self._to_robot.frame, self._allowed(planned))
                 self._asks.clear()
         self._say_why_stopping(safety)
         return frames
@@ -204,11 +203,14 @@ class Relay(RobotSide):
         if self._memory.lacks(asked):
             self._asks.append(asked)
 
-    def _allowed(self, command: Command) -> Command:
-        """For the robot, with its stamp, and with what it is asked instead of the estimate."""
-        v, omega = self._armed(command.v, command.omega)
-        asked = len(self._asks)
-        return Command(v, omega, command.tick, ROBOT_SYSTEM, ROBOT_COMPONENT, estimates=asked)
+    def _allowed(self, planned: Planned) -> list[Message]:
+        """For the robot, with its stamp, and with what it is asked instead of the estimate; its
+        plan goes with it, and the robot reads it off."""
+        command = planned.command
+        if not self.services.arming.armed:
+            planned = Planned(replace(command, v=0.0, omega=0.0, plan=0))
+        before = [*self._asks, *planned.frames()]
+        return [*before, replace(planned.command, estimates=len(before))]
 
     def close_tick(self) -> TraceRow:
         """What happened at this tick; the next one, just heard, says what was in force."""

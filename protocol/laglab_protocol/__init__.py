@@ -113,6 +113,7 @@ from laglab_protocol.messages.standard import (
     SystemTime,
     Timesync,
 )
+from laglab_protocol.plans import Assembly, Planned
 from laglab_protocol.playout import Playout
 from laglab_protocol.ration import LEAST_BYTES, Ration
 from laglab_protocol.refusals import Refusals
@@ -142,6 +143,7 @@ __all__ = [
     "UNKNOWN_DELAY",
     "Address",
     "Applied",
+    "Assembly",
     "Attitude",
     "AutopilotVersion",
     "AutopilotVersionRequest",
@@ -207,6 +209,7 @@ __all__ = [
     "ParamValue",
     "Ping",
     "Plan",
+    "Planned",
     "Playout",
     "PortBusyError",
     "ProtocolError",

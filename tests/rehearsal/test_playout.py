@@ -71,6 +71,7 @@ def test_a_recorded_link_leaves_it_to_another_play_out_what_is_late(tmp_path: Pa
     np.testing.assert_array_equal(wide.trace["x"], same.trace["x"])
 
 
+@pytest.mark.slow
 def test_the_same_bytes_inline_over_udp_and_over_a_serial_pair(
     laglab: Laglab, tmp_path: Path
 ) -> None:

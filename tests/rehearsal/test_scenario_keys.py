@@ -61,6 +61,7 @@ LINK: Keys = {
     "command": table(IMPAIRMENTS),
     "measurement": table(IMPAIRMENTS),
     "playout": table(PLAYOUT),
+    "plan": st.integers(0, 240),
     "event": st.lists(table(EVENT), max_size=2),
     "replay": st.sampled_from(["link.csv", "./link.csv", "earlier run/link.csv"]),
 }

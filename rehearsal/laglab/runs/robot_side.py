@@ -141,6 +141,7 @@ def gateway_config(scenario: Scenario) -> GatewayConfig:
         track=scenario.plant.track,
         command_playout=scenario.link.playout.command,
         measurement_playout=scenario.link.playout.measurement,
+        plan=scenario.link.plan,
     )
 
 

@@ -38,6 +38,7 @@ def station_config(scenario: Scenario) -> StationConfig:
         initial_estimate=scenario.first_estimate(),
         initial_covariance=scenario.estimator.initial_covariance * np.eye(3),
         command_delay=scenario.link.n,
+        plan=scenario.link.plan,
         guard=scenario.estimator.guard,
     )
 
@@ -55,6 +56,7 @@ def station_settings(scenario: Scenario) -> Settings:
         measurement_delay=scenario.link.measurement_delay,
         command_playout=scenario.link.playout.command,
         measurement_playout=scenario.link.playout.measurement,
+        plan=scenario.link.plan,
     )
 
 

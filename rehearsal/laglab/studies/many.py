@@ -68,6 +68,7 @@ def why_one_by_one(scenario: Scenario) -> str | None:
         f"there is no {scenario.estimator.kind} for many robots": (
             scenario.estimator.kind not in BATCHED
         ),
+        "there are no plans for many robots (plan)": link.plan > 0,
         "there is no play-out for many robots (playout)": bool(
             link.playout.command or link.playout.measurement
         ),

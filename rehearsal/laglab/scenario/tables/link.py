@@ -7,8 +7,8 @@ from pydantic import AfterValidator, Field, model_validator
 
 from laglab.scenario.tables.table import Table
 from laglab_gateway import IDEAL, Event, Impairments, TimelineError, read_link_log
-from laglab_gateway.values import Ticks, described
-from laglab_protocol import UNKNOWN_DELAY
+from laglab_gateway.values import Ticks, Whole, described
+from laglab_protocol import LONGEST_PLAN, UNKNOWN_DELAY
 
 Delay = Annotated[Ticks, Field(lt=UNKNOWN_DELAY)]
 """As the two sides can tell each other."""
@@ -55,6 +55,15 @@ class LinkTable(Table):
     playout: Annotated[
         PlayoutTable, described("-", "Whether both ends hide the link's jitter, and how far.")
     ] = PlayoutTable()
+    plan: Annotated[
+        Whole,
+        Field(ge=0, le=LONGEST_PLAN),
+        described(
+            "ticks",
+            "How far each command plans ahead, H: the robot goes on by the newest plan that it has "
+            "while nothing newer comes; 0: it has no plans, and holds the last command.",
+        ),
+    ] = 0
     event: Annotated[
         tuple[Event, ...],
         described("-", "Times at which the link is another; where they overlap, the last wins."),

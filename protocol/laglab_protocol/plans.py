@@ -1,8 +1,10 @@
-"""Commands that plan ahead: put together from their frames, and read off tick by tick."""
+"""Commands that plan ahead: taken apart into frames, and put together again."""
 
 from typing import NamedTuple
 
-from laglab_protocol import LONGEST_PLAN, PLANNED, Command, Plan
+from msgspec.structs import astuple
+
+from laglab_protocol.messages.loop import LONGEST_PLAN, PLANNED, Command, Plan
 
 OPEN = 64
 """Ticks by which the rest of a plan may be behind what was stamped later."""
@@ -27,10 +29,16 @@ class Planned(NamedTuple):
         """Its stamp."""
         return self.command.tick
 
-    @property
-    def speeds(self) -> tuple[Speeds, ...]:
-        """All, the command's first."""
-        return (self.command.speeds, *self.following)
+    def frames(self) -> list[Plan]:
+        """What goes before the command; nothing where it has no plan."""
+        _, _, tick, *target, _, _ = astuple(self.command)
+        in_force = tick if self.in_force is None else self.in_force
+        plans = []
+        for start in range(0, len(self.following), PLANNED):
+            piece = self.following[start : start + PLANNED]
+            v, omega = zip(*piece, *[(0.0, 0.0)] * (PLANNED - len(piece)), strict=True)
+            plans.append(Plan(v, omega, tick, in_force, start + 1, *target))
+        return plans
 
 
 class _Open(NamedTuple):
