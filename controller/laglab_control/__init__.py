@@ -33,6 +33,7 @@ from laglab_control.estimators import (
     RigidMotions,
     State,
     Taken,
+    TuePredictor,
     WheelScales,
 )
 from laglab_control.estimators.kalman import normalised_squared
@@ -93,6 +94,7 @@ __all__ = [
     "State",
     "StationConfig",
     "Taken",
+    "TuePredictor",
     "WheelScales",
     "chi_square_bound",
     "constant_delay",
