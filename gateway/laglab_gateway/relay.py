@@ -13,7 +13,7 @@ from typing import NamedTuple
 from msgspec.structs import replace
 
 from laglab_gateway.config import GatewayConfig
-from laglab_gateway.drive import WHY_STOPPING, Drive, Rejection, Safety
+from laglab_gateway.drive import WHY_STOPPING, Drive, Rejection, Safety, follow
 from laglab_gateway.link.fates import Fates
 from laglab_gateway.link.timeline import Direction
 from laglab_gateway.outcome import Outcome, reason_of
@@ -22,12 +22,15 @@ from laglab_gateway.services import RobotState, Services
 from laglab_gateway.side import RobotSide
 from laglab_protocol import (
     MAV_SEVERITY_ERROR,
+    ROBOT_COMPONENT,
+    ROBOT_SYSTEM,
     STATION_COMPONENT,
     STATION_HEARTBEAT,
     STATION_SYSTEM,
     UNANNOUNCED,
     UNKNOWN_DELAY,
     Applied,
+    Command,
     End,
     EndReason,
     Frame,
@@ -184,8 +187,18 @@ class Relay(RobotSide):
             if self._follow(planned, self.tick + 1, safety):
                 frames += map(self._to_robot.frame, self._allowed(planned))
                 self._asks.clear()
+        if not self.services.arming.armed and self.tick < self._drive.fresh:
+            frames.append(self._to_robot.frame(self._end_of_plan()))
         self._say_why_stopping(safety)
         return frames
+
+    def _end_of_plan(self) -> Command:
+        """Stand still: a robot that was stopped must not go on by the plan that it has."""
+        standstill = Command(
+            0.0, 0.0, self._drive.command_tick + 1, ROBOT_SYSTEM, ROBOT_COMPONENT, 0
+        )
+        self._drive = follow(standstill, self.tick)
+        return standstill
 
     def _say_why_stopping(self, safety: Safety) -> None:
         """Once, when it stops: the robot itself only knows that nothing comes."""
