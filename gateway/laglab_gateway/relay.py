@@ -187,7 +187,7 @@ class Relay(RobotSide):
             if self._follow(planned, self.tick + 1, safety):
                 frames += map(self._to_robot.frame, self._allowed(planned))
                 self._asks.clear()
-        if not self.services.arming.armed and self.tick < self._drive.fresh:
+        if not self.services.arming.armed and self.tick + 1 < self._drive.fresh:
             frames.append(self._to_robot.frame(self._end_of_plan()))
         self._say_why_stopping(safety)
         return frames
@@ -197,7 +197,7 @@ class Relay(RobotSide):
         standstill = Command(
             0.0, 0.0, self._drive.command_tick + 1, ROBOT_SYSTEM, ROBOT_COMPONENT, 0
         )
-        self._drive = follow(standstill, self.tick)
+        self._drive = follow(standstill, self.tick + 1)
         return standstill
 
     def _say_why_stopping(self, safety: Safety) -> None:
@@ -222,6 +222,7 @@ class Relay(RobotSide):
         command = planned.command
         if not self.services.arming.armed:
             planned = Planned(replace(command, v=0.0, omega=0.0, plan=0))
+            self._drive = follow(command, self.tick + 1)  # and no plan
         before = [*self._asks, *planned.frames()]
         return [*before, replace(planned.command, estimates=len(before))]
 
