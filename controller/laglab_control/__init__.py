@@ -34,6 +34,7 @@ from laglab_control.estimators import (
     RigidMotions,
     State,
     Taken,
+    TuePredictor,
     WheelScales,
 )
 from laglab_control.estimators.kalman import normalised_squared
@@ -117,6 +118,7 @@ __all__ = [
     "StationConfig",
     "Taken",
     "TrackingLaw",
+    "TuePredictor",
     "Waypoints",
     "WheelScales",
     "at_tick",

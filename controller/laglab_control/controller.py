@@ -67,6 +67,8 @@ class StationConfig:
     command_delay: Ticks = 0
     """n, until the stamps tell: n is estimated from the command that each measurement echoes, and
     the delay m of a measurement is read from its own stamp."""
+    plan: Ticks = 0
+    """H: how many ticks are planned beyond each command."""
     guard: bool = False
     """Whether the estimator is watched (`Guard`)."""
     first_tick: Ticks = 0
@@ -105,6 +107,8 @@ class Control(NamedTuple):
     P: Matrix | None = None
     """What is claimed for its error (3, 3): the estimator's covariance, and what is not known of
     the inputs; None: nothing."""
+    plan: tuple[Demand, ...] = ()
+    """What is to follow the last command, tick by tick, if nothing newer comes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,20 +152,26 @@ class Controller:
         """Tick 0, before its correction."""
         config = self.config
         x, P = np.array(config.initial_estimate), np.array(config.initial_covariance)
-        flight = take_off(config.model, config.command_delay)
+        flight = take_off(config.model, config.command_delay, config.plan)
         return Control(self._estimator.start(x, P), flight, STAND_STILL)
 
     def advance(self, control: Control) -> Control:
         """One tick later: the last command is on its way, the one n ticks older was applied."""
-        estimate, flight, drive, *_ = control
-        flight, applied = send(self._robot(estimate), flight, as_input(drive))
+        estimate, flight, drive, _, _, plan = control
+        all_planned = (drive, *plan) if self.config.plan else ()
+        flight, applied = send(self._robot(estimate), flight, as_input(drive), all_planned)
         estimate = self._estimator.predict(estimate, self._applied(applied, drive))
-        return Control(estimate, flight, drive)
+        return Control(estimate, flight, drive, plan=plan)
+
+    def unanswered(self, control: Control) -> Control:
+        """At a tick that never came here: the robot goes on in its plan, or holds what it has."""
+        plan = control.plan
+        return control._replace(drive=plan[0], plan=plan[1:]) if plan else control
 
     def expect(self, control: Control, s: int) -> Control:
         """The same, prepared for a measurement sampled at tick s, which is likely to come."""
-        estimate, flight, drive, *_ = control
-        return Control(self._estimator.expect(estimate, s), flight, drive)
+        estimate, flight, drive, _, _, plan = control
+        return Control(self._estimator.expect(estimate, s), flight, drive, plan=plan)
 
     def answer(
         self,
@@ -174,12 +184,29 @@ class Controller:
 
         The robot is to stand still when there is no estimate to drive it by, or it has diverged.
         """
-        estimate, flight, last, pose, P = self.correct(control, measurements, echoes, recalled)
+        estimate, flight, last, pose, P, _ = self.correct(control, measurements, echoes, recalled)
         if pose is None or self.diverged(pose):
             return Control(estimate, flight, STAND_STILL, pose, P)
         tick = self.config.first_tick + flight.tick + flight.command_delay
-        drive = self.command(self._there(estimate, flight, last, pose), tick, last, P)
-        return Control(estimate, flight, drive, pose, P)
+        there = self._there(estimate, flight, last, pose)
+        drive = self.command(there, tick, last, P)
+        if not self.config.plan:
+            return Control(estimate, flight, drive, pose, P)
+        plan = self._planned(there, tick, drive, P, self._robot(estimate))
+        return Control(estimate, flight, drive, pose, P, plan)
+
+    def _planned(
+        self, there: Way[float], tick: int, first: Demand, P: Matrix | None, robot: Ways
+    ) -> tuple[Demand, ...]:
+        """u_{k+1|k} ... u_{k+H|k}, which would follow the command `first` if nothing new were
+        learnt: law and model run forward from where the robot then is, `there` at its `tick`."""
+        planned = [first]
+        for ahead in range(1, self.config.plan + 1):
+            there = joined(there, robot.way(as_input(planned[-1])))
+            if is_far(there, self.config.goal):
+                break
+            planned.append(self.command(there, tick + ahead, planned[-1], P))
+        return tuple(planned[1:])
 
     def correct(
         self,

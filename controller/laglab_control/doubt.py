@@ -3,7 +3,8 @@
 Until an echo comes an input is only believed. It may have come into force a little earlier or later
 than the commands usually do; when the echoes stop coming, the last one known may have been held all
 the while, or the robot has stopped. Each is a vector d of what the pose [m, m, rad] would differ
-by, and its claimed covariance is d d^T.
+by, and its claimed covariance is d d^T. A robot that has plans does as believed as long as they
+reach: what it applies then is in all of them.
 """
 
 from collections.abc import Iterator
@@ -49,16 +50,16 @@ def doubt(flight: Flight, robot: RobotModel, x: Vector) -> Matrix | None:
 
 
 def _missed(flight: Flight, Ts: float) -> Iterator[Missed[float]]:
-    told = flight.told
+    told, planned = flight.told, flight.plans.horizon if flight.plans else 0
     if told.usual is None:
         return
     believed = flight.tick - 1 - told.known
-    if believed > told.usual + PATIENCE:
+    if believed > told.usual + PATIENCE + planned:
         yield _held(flight, Ts, believed)
         yield _stopped(flight, Ts)
-    elif told.spread:
+    elif told.spread and not planned:
         yield _shifted(flight, Ts, believed, told.spread)
-    if told.missing:
+    if len(told.missing) > planned:
         yield _untold(flight, Ts)
 
 

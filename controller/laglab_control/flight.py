@@ -8,10 +8,12 @@ from typing import NamedTuple
 import numpy as np
 
 from laglab_control.estimators.interface import Applied
+from laglab_control.laws.interface import Demand
 from laglab_control.model import Vector
 from laglab_control.motion import NOWHERE, Way, joined
 from laglab_control.past.log import Log, append, logged
 from laglab_control.past.sliding import SlidingProduct
+from laglab_control.plans import Plans, no_plans
 from laglab_control.robot import Ways
 
 STAND = np.zeros(2)
@@ -91,21 +93,38 @@ class Flight(NamedTuple):
     """u_{tick-n} ... u_{tick-1}: standing still for what was sent before tick 0."""
     ahead: Way[float]
     """Where they lead."""
+    plans: Plans | None = None
+    """Where commands plan ahead: then n is what they are made for, and what is `sent` is what the
+    robot will make of them."""
+
+    @property
+    def usual_delay(self) -> int:
+        """After how many ticks a command usually comes into force."""
+        return self.command_delay + (self.plans.behind if self.plans else 0)
 
 
-def take_off(robot: Ways, command_delay: int) -> Flight:
-    """Before the first command."""
+def take_off(robot: Ways, command_delay: int, horizon: int = 0) -> Flight:
+    """Before the first command; `horizon` ticks are planned with each."""
     nothing: SlidingProduct[Vector, Way[float]] = SlidingProduct(joined, NOWHERE)
-    flight = Flight(0, logged(), command_delay, Told(), logged(), nothing, NOWHERE)
+    plans = no_plans(horizon) if horizon else None
+    flight = Flight(0, logged(), command_delay, Told(), logged(), nothing, NOWHERE, plans)
     return _rebuilt(robot, flight)
 
 
-def send(robot: Ways, flight: Flight, u: Vector) -> tuple[Flight, Vector]:
-    """With the command of this tick on its way; and the one that is in force until the next."""
-    tick, sent, n, told, sums, in_flight, _ = flight
+def send(
+    robot: Ways, flight: Flight, u: Vector, plan: Sequence[Demand] = ()
+) -> tuple[Flight, Vector]:
+    """With the command of this tick on its way; and the input that is in force until the next.
+
+    Where commands plan ahead, `plan` begins with the command itself.
+    """
+    tick, sent, n, told, sums, in_flight, _, plans = flight
+    if plans:
+        plans, u = plans.send(plan)
     sent, sums = append(sent, u, MEMORY), append(sums, _added(sums, u), MEMORY)
     applied, in_flight = in_flight.push(u, robot.way(u)).pop()
-    return Flight(tick + 1, sent, n, told, sums, in_flight, in_flight.product), applied
+    ahead = in_flight.product
+    return Flight(tick + 1, sent, n, told, sums, in_flight, ahead, plans), applied
 
 
 def hear(
@@ -121,10 +140,12 @@ def hear(
     """
     if not (echoes or recalled):
         return flight, []
-    tick, sent, n, told, sums, in_flight, ahead = flight
+    tick, sent, n, told, sums, in_flight, ahead, plans = flight
     told, inputs = learned(told, tick, echoes, recalled)
-    seen = told.usual_delay(otherwise=n)
-    flight = Flight(tick, sent, seen, told, sums, in_flight, ahead)
+    seen = told.usual_delay(otherwise=flight.usual_delay)
+    if plans and seen >= n:  # the robot is that far on in its plans
+        plans, seen = plans.late(seen - n), n
+    flight = Flight(tick, sent, seen, told, sums, in_flight, ahead, plans)
     if seen == n:
         return flight, inputs
     flight = _rebuilt(robot, flight)

@@ -10,7 +10,7 @@ import numpy as np
 import laglab_protocol as protocol
 from laglab_control.estimators.interface import Applied, Measured
 from laglab_control.flight import Echo
-from laglab_protocol import UNANNOUNCED, Measurement
+from laglab_protocol import UNANNOUNCED, Measurement, Playout
 
 
 class Came(NamedTuple):
@@ -40,6 +40,24 @@ class Coming:
         self._measurements.clear()
         self._recalled.clear()
         return came
+
+
+class PlayedOut:
+    """The measurements of what came, all with the same delay of `bound` ticks."""
+
+    def __init__(self, bound: int) -> None:
+        self.late = 0
+        """Came too late, and were not used."""
+        self._playout = Playout[Measurement](bound)
+
+    def take(self, tick: int, came: Came) -> Came:
+        """What there is to hear at `tick`, when this came."""
+        self.late += len(self._playout.take(tick, came.measurements))
+        return Came(tuple(self._playout.due(tick)), came.recalled)
+
+    def begin_anew(self) -> None:
+        """What is held is of another robot."""
+        self._playout.clear()
 
 
 def measured(messages: Sequence[Measurement], first: int, tick: int) -> list[Measured]:

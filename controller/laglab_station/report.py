@@ -37,6 +37,8 @@ class StationReport(Struct, frozen=True):
     """All."""
     gated: int = 0
     """Measurements that were too wild to be used."""
+    late: int = 0
+    """Measurements that came too late for play-out, and were not used."""
     emergency_stop: bool = False
     """Whether the robot said that somebody had stopped it for good."""
     calibration: tuple[Calibrated, ...] = ()

@@ -2,8 +2,10 @@
 
 from collections.abc import Sequence
 
+from msgspec.structs import replace
+
 from laglab_control import Control
-from laglab_protocol import Command, CommandLong, Estimate, Message
+from laglab_protocol import Command, CommandLong, Estimate, Message, Planned
 from laglab_protocol.dialect.generated import laglab as mavlink
 
 
@@ -13,7 +15,18 @@ def said(
     """The answer to this robot's tick; the command closes it, and says how many went before."""
     before = [*asks, *_estimate(tick, control)]
     v, omega, _ = control.drive
+    if control.plan:
+        return [*before, *_planned(Command(v, omega, tick, *robot, len(before)), control)]
     return [*before, Command(v, omega, tick, *robot, estimates=len(before))]
+
+
+def _planned(command: Command, control: Control) -> list[Message]:
+    """What is to follow it, and the command."""
+    in_force = command.tick + control.flight.command_delay
+    following = tuple((v, omega) for v, omega, _ in control.plan)
+    frames = Planned(command, in_force, following).frames()
+    said_before = command.estimates + len(frames)
+    return [*frames, replace(command, estimates=said_before, plan=len(following))]
 
 
 def _estimate(tick: int, control: Control) -> list[Estimate]:

@@ -10,10 +10,13 @@ from laglab_protocol import (
     STATION_COMPONENT,
     STATION_SYSTEM,
     Applied,
+    Assembly,
     Command,
     Estimate,
     Frame,
     Measurement,
+    Plan,
+    Planned,
     Tick,
     read_tlog,
 )
@@ -34,6 +37,8 @@ class SessionTick(NamedTuple):
     """As told at this tick."""
     recalled: tuple[Applied, ...] = ()
     """What the robot recalled at this tick."""
+    following: tuple[tuple[float, float], ...] = ()
+    """What the command plans to follow it [m/s, rad/s]."""
 
 
 def read_session(path: Path) -> Iterator[SessionTick]:
@@ -50,6 +55,7 @@ def heard(frames: Iterable[Frame]) -> Iterator[SessionTick]:
     arriving: list[Measurement] = []
     recalled: list[Applied] = []
     last: SessionTick | None = None
+    plans = Assembly()
     for frame in frames:
         match (frame.system, frame.component), frame.message:
             case speaker, Measurement() as measurement if speaker == ROBOT:
@@ -64,8 +70,18 @@ def heard(frames: Iterable[Frame]) -> Iterator[SessionTick]:
                 arriving, recalled = [], []
             case speaker, Command() | Estimate() as said if speaker == STATION and last:
                 last = _with(last, said)
+                if isinstance(said, Command) and said.plan:
+                    last = _planned(last, plans.take(said))
+            case speaker, Plan() as part if speaker == STATION and last:
+                last = _planned(last, plans.take(part))
     if last is not None:
         yield last
+
+
+def _planned(last: SessionTick, whole: Planned | None) -> SessionTick:
+    if whole is None or whole.tick != last.tick:
+        return last
+    return last._replace(following=whole.following)
 
 
 def _with(last: SessionTick, said: Command | Estimate) -> SessionTick:

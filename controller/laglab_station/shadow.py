@@ -7,7 +7,7 @@ import numpy as np
 
 from laglab_control import Control, Controller, Demand, StationConfig, at_tick
 from laglab_control.model import Matrix, Vector
-from laglab_station.hearing import echoes, measured, recalled
+from laglab_station.hearing import Came, PlayedOut, echoes, measured, recalled
 from laglab_station.session import SessionTick
 
 NOTHING = np.full((3, 3), np.nan)
@@ -24,20 +24,24 @@ class ShadowRow(NamedTuple):
     """(3, 3)."""
 
 
-def shadow(config: StationConfig, session: Iterable[SessionTick]) -> Iterator[ShadowRow]:
+def shadow(
+    config: StationConfig, session: Iterable[SessionTick], playout: int = 0
+) -> Iterator[ShadowRow]:
     """Run `config.estimator` beside the commands that were sent; the first tick heard is tick 0.
 
-    Raises PluginFailedError, naming the tick, when an estimator that somebody brought fails.
-    The law of `config` is not asked. Over ticks that are missing, the last command held. It ends
-    early when the estimate has become infinite.
+    Measurements are played out as by the station. Raises PluginFailedError, naming the tick, when
+    an estimator that somebody brought fails. The law of `config` is not asked. Over ticks that are
+    missing, the last command held, or its plan went on. It ends early when the estimate has become
+    infinite.
     """
     controller = Controller(config)
     control = controller.start()
     first = last = None
-    for heard in session:
+    for heard in _played_out(session, playout):
         first, last = (heard.tick, heard.tick) if first is None or last is None else (first, last)
         with at_tick(heard.tick):
-            for _ in range(heard.tick - last):
+            for lost in range(heard.tick - last):
+                control = controller.unanswered(control) if lost else control
                 control = controller.advance(control)
             control = _followed(controller, control, heard, first)
         last = heard.tick
@@ -47,11 +51,26 @@ def shadow(config: StationConfig, session: Iterable[SessionTick]) -> Iterator[Sh
         yield ShadowRow(last, NOTHING[0] if x is None else x, NOTHING if P is None else P)
 
 
+def _played_out(session: Iterable[SessionTick], bound: int) -> Iterable[SessionTick]:
+    if not bound:
+        return session
+    held = PlayedOut(bound)
+    return (
+        heard._replace(
+            measurements=held.take(heard.tick, Came(heard.measurements, ())).measurements
+        )
+        for heard in session
+    )
+
+
 def _followed(controller: Controller, control: Control, heard: SessionTick, first: int) -> Control:
     """The controller's correction, with the command that was really sent, or the last one."""
-    drive = control.drive
-    if heard.command is not None:
+    if heard.command is None:
+        control = controller.unanswered(control)
+        drive, plan = control.drive, control.plan
+    else:
         drive = Demand(heard.command.v, heard.command.omega)
+        plan = tuple(Demand(v, omega) for v, omega in heard.following)
     with np.errstate(over="ignore", invalid="ignore"):
         control = controller.correct(
             control,
@@ -59,4 +78,4 @@ def _followed(controller: Controller, control: Control, heard: SessionTick, firs
             echoes(heard.measurements, first, heard.tick),
             recalled(heard.recalled, first, heard.tick),
         )
-    return control._replace(drive=drive)
+    return control._replace(drive=drive, plan=plan)

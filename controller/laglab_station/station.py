@@ -35,7 +35,7 @@ from laglab_protocol import (
     Timesync,
 )
 from laglab_station.alarms import Alarms
-from laglab_station.hearing import Came, Coming, echoes, measured, recalled
+from laglab_station.hearing import Came, Coming, PlayedOut, echoes, measured, recalled
 from laglab_station.joining import Rest, observe, prior
 from laglab_station.recalling import Questions
 from laglab_station.report import Calibrated, StationReport
@@ -64,10 +64,12 @@ class Station:
         clock: Callable[[], int] | None = None,
         sender: Sender | None = None,
         settings: Settings | None = None,
+        playout: int = 0,
     ) -> None:
         """`clock` [ns] times the ticks and answers TIMESYNC; without one neither is done.
 
-        `settings` is what the robot is told to compare with; by default what `config` knows.
+        `settings` is what the robot is told to compare with; by default what `config` knows. A
+        measurement is used `playout` ticks after its sampling, or as soon as it comes if that is 0.
         """
         self._config = config
         self._make_controller = controller
@@ -79,6 +81,7 @@ class Station:
         self.robot_settings: Settings | None = None
         self._robot: tuple[int, int] | None = None
         self._coming = Coming()
+        self._played_out = PlayedOut(playout) if playout else None
         self._questions = Questions()
         self._restart = Restart()
         self._first = 0
@@ -126,7 +129,7 @@ class Station:
         learned = self._learned()
         p50, p99, longest = self._times.quantiles() or (None, None, None)
         return StationReport(
-            n_seen=self._control.flight.command_delay,
+            n_seen=self._control.flight.usual_delay,
             m_seen=self._measurement_delay,
             tick_p50_s=p50,
             tick_p99_s=p99,
@@ -135,6 +138,7 @@ class Station:
             alarms=tuple(self._alarms.told),
             alarms_raised=self._alarms.raised,
             gated=self._alarms.gated(self._controller, self._control),
+            late=self._played_out.late if self._played_out else 0,
             emergency_stop=self._warnings.emergency_stop,
             calibration=learned,
         )
@@ -230,6 +234,8 @@ class Station:
         if message.tick == self._tick:
             return self._answer
         if self._outcome is None and (self._tick is None or message.tick > self._tick):
+            if self._played_out:
+                came = self._played_out.take(message.tick, came)
             self._advance_timed(message.tick, came)
             return self._answer
         return []
@@ -244,6 +250,8 @@ class Station:
         self._look_back()
         self._first, self._tick = tick, None
         self._questions = Questions()
+        if self._played_out:
+            self._played_out.begin_anew()
         self._alarms.handed_over(self._controller, self._control)
         if tick or self._controller.config.first_tick:
             self._controller = self._make_controller(replace(self._config, first_tick=tick))
@@ -302,11 +310,12 @@ class Station:
         return list(map(self._sender.frame, messages))
 
     def _step(self, tick: int, came: Came) -> None:
-        """On to `tick`; over ticks that were lost on the way the last command is taken to hold,
-        until the robot tells."""
+        """On to `tick`; over ticks that were lost on the way the last command is taken to hold, or
+        its plan to go on, until the robot tells."""
         self._look_back()
         control = self._control
-        for _ in range(0 if self._tick is None else tick - self._tick):
+        for lost in range(0 if self._tick is None else tick - self._tick):
+            control = self._controller.unanswered(control) if lost else control
             control = self._ahead or self._controller.advance(control)
             self._ahead = None
         first = self._first

@@ -13,19 +13,31 @@ typedef struct {
     int32_t stamp;
 } Command;
 
+#define PLAN_LONGEST 240 /* ticks */
+#define PLAN_PIECE 15    /* of them in one frame */
+
+/* A command, and the speeds that are to follow it, tick by tick, if nothing newer comes. */
 typedef struct {
-    Command newest;
-    uint32_t since;   /* the tick from which on the newest command counts */
+    Command command;
+    uint16_t length;   /* how many follow */
+    uint32_t in_force; /* the tick that the command is meant for, if any follow */
+    double v[PLAN_LONGEST], omega[PLAN_LONGEST];
+} Planned;
+
+typedef struct {
+    Planned newest;
+    uint32_t since;   /* the last tick for which there was something fresh, or planned */
     Command in_force; /* on [t_k, t_{k+1}) */
 } Drive;
 
 /* Standing still, until the first command. */
 Drive drive_start(void);
 
-/* A command comes into force at `tick`, unless it is stale or not finite. */
-void drive_follow(Drive *drive, uint32_t tick, Command command);
+/* A command comes into force at `tick`, unless it is stale. */
+void drive_follow(Drive *drive, uint32_t tick, const Planned *planned);
 
-/* What is in force from `tick` on: the newest command, or the way to a stop when it is too long ago. */
+/* What is in force from `tick` on: the newest command, what it plans for that tick, or the way to a stop when there has
+ * been neither for too long. */
 void drive_supervise(Drive *drive, uint32_t tick);
 
 #endif

@@ -6,7 +6,7 @@
 
 #include <laglab/mavlink.h>
 
-enum { ROBOT_SYSTEM = 1, STATION_SYSTEM = 200, DIALECT_VERSION = 2, MINUTE = 6000000 };
+enum { ROBOT_SYSTEM = 1, STATION_SYSTEM = 200, DIALECT_VERSION = 3, MINUTE = 6000000 };
 #define ROBOT_COMPONENT MAV_COMP_ID_AUTOPILOT1
 #define STATION_COMPONENT MAV_COMP_ID_MISSIONPLANNER
 
@@ -16,7 +16,24 @@ static LinkEvent command_of(const mavlink_message_t *message) {
     if (command.target_system != ROBOT_SYSTEM || command.target_component != ROBOT_COMPONENT) {
         return (LinkEvent){.kind = LINK_NOTHING};
     }
-    return (LinkEvent){.kind = LINK_COMMAND, .command = {command.v, command.omega, (int32_t)command.tick}};
+    return (LinkEvent){.kind = LINK_COMMAND,
+                       .command = {command.v, command.omega, (int32_t)command.tick},
+                       .length = command.plan};
+}
+
+static LinkEvent plan_of(const mavlink_message_t *message) {
+    mavlink_laglab_plan_t plan;
+    mavlink_msg_laglab_plan_decode(message, &plan);
+    if (plan.target_system != ROBOT_SYSTEM || plan.target_component != ROBOT_COMPONENT) {
+        return (LinkEvent){.kind = LINK_NOTHING};
+    }
+    LinkEvent event = {.kind = LINK_PLAN};
+    event.piece.stamp = (int32_t)plan.tick;
+    event.piece.in_force = plan.in_force;
+    event.piece.first = plan.first;
+    memcpy(event.piece.v, plan.v, sizeof event.piece.v);
+    memcpy(event.piece.omega, plan.omega, sizeof event.piece.omega);
+    return event;
 }
 
 static LinkEvent request_of(uint8_t system, uint8_t component, uint16_t number) {
@@ -102,6 +119,8 @@ static LinkEvent event_of(const mavlink_message_t *message) {
         return (LinkEvent){.kind = LINK_SETTINGS};
     case MAVLINK_MSG_ID_LAGLAB_COMMAND:
         return command_of(message);
+    case MAVLINK_MSG_ID_LAGLAB_PLAN:
+        return plan_of(message);
     case MAVLINK_MSG_ID_LAGLAB_RECALL:
         return recall_of(message);
     case MAVLINK_MSG_ID_LAGLAB_PROBE:
@@ -200,11 +219,12 @@ size_t link_write_refusal(uint8_t *buffer, uint16_t request) {
     return mavlink_msg_to_send_buffer(buffer, &message);
 }
 
-/* What this robot knows of itself: it has no limits, and its link's delays are nothing that it could know. */
-size_t link_write_settings(uint8_t *buffer) {
+/* What this robot knows of itself: it has no limits, follows any plan, and its link's delays are nothing that it could
+ * know. */
+size_t link_write_settings(uint8_t *buffer, uint16_t playout) {
     mavlink_message_t message;
     mavlink_msg_laglab_settings_pack(ROBOT_SYSTEM, ROBOT_COMPONENT, &message, SAMPLE_TIME, NAN, NAN, INFINITY, INFINITY,
-                                     UINT16_MAX, UINT16_MAX, DIALECT_VERSION);
+                                     UINT16_MAX, UINT16_MAX, DIALECT_VERSION, playout, UINT16_MAX, UINT16_MAX);
     return mavlink_msg_to_send_buffer(buffer, &message);
 }
 

@@ -7,6 +7,7 @@
 
 #include "body.h"
 #include "drive.h"
+#include "inbox.h"
 #include "key.h"
 #include "memory.h"
 #include "probe.h"
@@ -15,8 +16,21 @@
 
 /* What a station can ask of the robot. */
 typedef struct {
-    enum { LINK_NOTHING, LINK_REFUSED, LINK_BEGIN, LINK_SETTINGS, LINK_COMMAND, LINK_REQUEST, LINK_RECALL, LINK_PROBE, LINK_END } kind;
+    enum {
+        LINK_NOTHING,
+        LINK_REFUSED,
+        LINK_BEGIN,
+        LINK_SETTINGS,
+        LINK_COMMAND,
+        LINK_PLAN,
+        LINK_REQUEST,
+        LINK_RECALL,
+        LINK_PROBE,
+        LINK_END
+    } kind;
     Command command;
+    uint16_t length;  /* of the plan that belongs to a command */
+    Piece piece;      /* of one */
     uint16_t request; /* a MAV_CMD */
     uint32_t first;   /* the first tick to recall */
     uint16_t count;   /* ticks to recall */
@@ -47,8 +61,9 @@ size_t link_write_tick(uint8_t *buffer, uint32_t tick, Pose seen, Command in_for
 /* The answer to a request: this robot knows none. Its size. */
 size_t link_write_refusal(uint8_t *buffer, uint16_t request);
 
-/* The answer to a station that says what it was told. Its size. */
-size_t link_write_settings(uint8_t *buffer);
+/* The answer to a station that says what it was told; commands are played out so many ticks after their stamps, or not
+ * at all (0). Its size. */
+size_t link_write_settings(uint8_t *buffer, uint16_t playout);
 
 /* The answer to a question of what was in force: LINK_RECALLED ticks from `first` on at most. Its size. */
 #define LINK_RECALLED 12

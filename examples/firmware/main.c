@@ -1,5 +1,6 @@
-/* A small robot on a serial port: `firmware [--speed F] [--key FILE] DEVICE`. Its clock runs F times as fast as the
- * wall's; with a key it signs what it says, and hears nothing that is not signed.
+/* A small robot on a serial port: `firmware [--speed F] [--key FILE] [--playout TICKS] DEVICE`. Its clock runs F times as
+ * fast as the wall's; with a key it signs what it says, and hears nothing that is not signed; with a play-out it follows
+ * each command so many ticks after its stamp, and none that comes later.
  *
  * It waits for a heartbeat, then ticks from 0 on, every SAMPLE_TIME of its own clock, until it is told to end. What
  * has been received by a tick comes into force at that tick. */
@@ -17,6 +18,7 @@
 
 #include "body.h"
 #include "drive.h"
+#include "inbox.h"
 #include "key.h"
 #include "link.h"
 #include "memory.h"
@@ -34,6 +36,7 @@ typedef struct {
     uint32_t tick;
     Body body;
     Drive drive;
+    Inbox inbox;
     Memory memory;
     Probing probing;
     uint32_t asked; /* the next tick to recall */
@@ -97,12 +100,13 @@ static bool obey(Robot *robot, LinkEvent event) {
     case LINK_REQUEST:
         return send(robot, buffer, link_write_refusal(buffer, event.request));
     case LINK_SETTINGS:
-        return send(robot, buffer, link_write_settings(buffer));
+        return send(robot, buffer, link_write_settings(buffer, (uint16_t)robot->inbox.playout));
     case LINK_BEGIN:
         if (!robot->running) {
             robot->running = true;
             robot->tick = 0;
             robot->memory.ticks = 0;
+            inbox_clear(&robot->inbox);
             robot->owed = 0;
         }
         return true;
@@ -114,7 +118,12 @@ static bool obey(Robot *robot, LinkEvent event) {
         return true;
     case LINK_COMMAND:
         if (robot->running) {
-            drive_follow(&robot->drive, robot->tick, event.command);
+            inbox_take_command(&robot->inbox, robot->tick, event.command, event.length);
+        }
+        return true;
+    case LINK_PLAN:
+        if (robot->running) {
+            inbox_take_piece(&robot->inbox, robot->tick, &event.piece);
         }
         return true;
     case LINK_END:
@@ -176,6 +185,10 @@ static bool tick(Robot *robot) {
     const Pose seen = body_measure(&robot->body);
     size_t size = recall(robot, buffer);
     size += link_write_tick(buffer + size, robot->tick, seen, robot->drive.in_force, size > 0 ? 2 : 1);
+    const Planned *newest = inbox_due(&robot->inbox, robot->tick);
+    if (newest) {
+        drive_follow(&robot->drive, robot->tick, newest);
+    }
     drive_supervise(&robot->drive, robot->tick);
     memory_keep(&robot->memory, robot->drive.in_force.v, robot->drive.in_force.omega);
     body_drive(&robot->body, robot->drive.in_force.v, robot->drive.in_force.omega, SAMPLE_TIME);
@@ -214,6 +227,7 @@ static void run(Robot *robot) {
 
 typedef struct {
     double speed;
+    int playout;
     const char *key, *device;
 } Options;
 
@@ -226,18 +240,22 @@ static bool read_options(int argc, char **argv, Options *options) {
             options->speed = atof(argv[i + 1]);
         } else if (strcmp(argv[i], "--key") == 0) {
             options->key = argv[i + 1];
+        } else if (strcmp(argv[i], "--playout") == 0) {
+            options->playout = atoi(argv[i + 1]);
         } else {
             return false;
         }
     }
     options->device = argv[argc - 1];
-    return i + 1 == argc && options->speed > 0 && options->speed <= 100;
+    const bool speed = options->speed > 0 && options->speed <= 100;
+    return i + 1 == argc && speed && options->playout >= 0 && options->playout < INBOX_SLOTS;
 }
 
 int main(int argc, char **argv) {
     Options options;
     if (!read_options(argc, argv, &options)) {
-        fprintf(stderr, "usage: %s [--speed F] [--key FILE] DEVICE, with F up to 100\n", argv[0]);
+        fprintf(stderr, "usage: %s [--speed F] [--key FILE] [--playout TICKS] DEVICE, F up to 100, TICKS below %d\n",
+                argv[0], INBOX_SLOTS);
         return 2;
     }
     if (options.key) {
@@ -251,6 +269,8 @@ int main(int argc, char **argv) {
     }
     const char *device = options.device;
     Robot robot = {.device = device, .port = open_port(device), .body = body_start(), .drive = drive_start()};
+    inbox_clear(&robot.inbox);
+    robot.inbox.playout = (uint32_t)options.playout;
     robot.wakes = SAMPLE_TIME / options.speed;
     if (robot.port < 0) {
         fprintf(stderr, "%s: cannot open it as a serial port: %s\n", device, strerror(errno));

@@ -10,7 +10,9 @@ from laglab_protocol import Settings
 @checked
 class GatewayConfig:
     """Delays n and m [ticks], the tick that ends the run (None: none does), Ts [s], the failsafe;
-    the robot's geometry [m], for the station to compare, where it is known.
+    the robot's geometry [m], for the station to compare, where it is known; the play-out of
+    commands here, and of measurements at the station, and for how much longer commands plan
+    [ticks], 0 without.
 
     Raises ConfigError, naming the field, when one cannot be.
     """
@@ -22,6 +24,9 @@ class GatewayConfig:
     safety: Safety = Safety()
     wheel_radius: Positive | None = None
     track: Positive | None = None
+    command_playout: Ticks = 0
+    measurement_playout: Ticks = 0
+    plan: Ticks = 0
 
     @property
     def settings(self) -> Settings:
@@ -35,4 +40,7 @@ class GatewayConfig:
             omega_max=math.inf if omega_limit is None else omega_limit,
             command_delay=self.command_delay,
             measurement_delay=self.measurement_delay,
+            command_playout=self.command_playout,
+            measurement_playout=self.measurement_playout,
+            plan=self.plan,
         )

@@ -17,7 +17,7 @@ from laglab_gateway.plant import Plant
 from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import RobotState, Services, standard_parameters
 from laglab_gateway.side import RobotSide
-from laglab_protocol import MAV_SEVERITY_ERROR, Measurement, Recall, Sender
+from laglab_protocol import MAV_SEVERITY_ERROR, Measurement, Sender
 
 
 class Gateway(RobotSide):
@@ -72,13 +72,14 @@ class Gateway(RobotSide):
         Then the plant is on its way to k + 1, unless the run ends at k.
         """
         k, Ts, safety = self.tick, self._config.sample_time, self.safety
-        for message, _ in self._commands.due(k):
-            if isinstance(message, Recall):
-                self._owed.owe(self._memory.answers(message))
-            else:
-                self.audit.command.arrived(message.tick, k)
-                if self._follow(message, k, safety):
-                    self.notes.came("command", message.tick, k, self.elapsed)
+        came = self._take_commands(k)
+        for asked in came.recalls:
+            self._owed.owe(self._memory.answers(asked))
+        for command in came.commands:
+            self.audit.command.arrived(command.tick, k)
+        for planned in came.ready:
+            if self._follow(planned, k, safety):
+                self.notes.came("command", planned.tick, k, self.elapsed)
         supervised = supervise(self._drive, k, Ts, safety)
         if supervised.mode is not self._drive.mode:
             self.audit.stopped(k)

@@ -1,23 +1,28 @@
 """Which command the robot follows: a state machine without clock, one state a tick.
 
     WAITING    no command yet: the robot stands still
-    DRIVING    the newest command is in force
-    STOPPING   no fresh command for `link_timeout`: the speeds ramp to 0 and stay there
+    DRIVING    the newest command is in force, or what it plans for this tick
+    STOPPING   nothing fresh for `link_timeout`, nor planned: the speeds ramp to 0 and stay there
 
 A fresh command, one that is newer than the one in force, finite and within the limits, leads from
 every mode to DRIVING.
 """
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 from typing import Annotated
 
 from laglab_gateway.values import Positive, Seconds, checked, described
-from laglab_protocol import NO_COMMAND, Command
+from laglab_protocol import NO_COMMAND, Command, Planned
 
 FASTEST = 1e6
 """[m/s], [rad/s] Nothing drives faster, whatever the limits: the wheels' speeds must be finite."""
+
+
+Speeds = tuple[float, float]
+"""v [m/s], omega [rad/s]."""
 
 
 class Mode(Enum):
@@ -34,6 +39,8 @@ class Rejection(Enum):
     NOT_FINITE = "not finite"
     OUT_OF_LIMITS = "out of limits"
     STALE = "stale"
+    LATE = "late"
+    INCOMPLETE = "incomplete"
 
 
 WHY_STOPPING = {
@@ -61,21 +68,31 @@ class Safety:
 
 @dataclass(frozen=True)
 class Drive:
-    """What is in force at a tick. `fresh` is the tick at which the last command was accepted."""
+    """What is in force at a tick.
+
+    `v` and `omega` are what the last command was, or the last that it planned; `fresh` is the tick
+    at which it was accepted, or that its plan ends with; `plan` is what comes before that, from
+    the tick `planned` on.
+    """
 
     mode: Mode = Mode.WAITING
     v: float = 0.0
     omega: float = 0.0
     command_tick: int = NO_COMMAND
     fresh: int = 0
+    plan: tuple[Speeds, ...] = ()
+    planned: int = 0
 
 
-def rejection(drive: Drive, command: Command, safety: Safety) -> Rejection | None:
-    """Why `command` is not to be followed; None when it is."""
-    if not (math.isfinite(command.v) and math.isfinite(command.omega)):
-        return Rejection.NOT_FINITE
-    if _beyond(command.v, safety.v_limit) or _beyond(command.omega, safety.omega_limit):
-        return Rejection.OUT_OF_LIMITS
+def rejection(
+    drive: Drive, command: Command, safety: Safety, following: Iterable[Speeds] = ()
+) -> Rejection | None:
+    """Why `command`, with what it plans to follow it, is not to be followed; None when it is."""
+    for v, omega in (command.speeds, *following):
+        if not (math.isfinite(v) and math.isfinite(omega)):
+            return Rejection.NOT_FINITE
+        if _beyond(v, safety.v_limit) or _beyond(omega, safety.omega_limit):
+            return Rejection.OUT_OF_LIMITS
     return Rejection.STALE if command.tick <= drive.command_tick else None
 
 
@@ -86,6 +103,16 @@ def _beyond(value: float, limit: float | None) -> bool:
 def follow(command: Command, tick: int) -> Drive:
     """A command that was not refused comes into force at `tick`."""
     return Drive(Mode.DRIVING, command.v, command.omega, command.tick, tick)
+
+
+def follow_plan(planned: Planned, tick: int) -> Drive:
+    """The same with a plan: at each tick what it has for it, also for `tick`."""
+    command, first, following = planned
+    if first is None or not following:
+        return follow(command, tick)
+    plan = (command.speeds, *following)
+    ends = max(first + len(following), tick)
+    return Drive(Mode.DRIVING, *plan[-1], command.tick, ends, plan, first)
 
 
 def supervise(drive: Drive, tick: int, sample_time: float, safety: Safety) -> Drive:
@@ -100,6 +127,8 @@ def speeds(drive: Drive, tick: int, sample_time: float, safety: Safety) -> tuple
     """v [m/s] and ω [rad/s] in force on [t_tick, t_{tick+1})."""
     match drive.mode:
         case Mode.DRIVING:
+            if tick < drive.fresh:
+                return drive.plan[tick - drive.planned]
             return drive.v, drive.omega
         case Mode.STOPPING:
             since = (tick - drive.fresh) * sample_time - safety.link_timeout

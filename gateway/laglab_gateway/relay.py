@@ -13,7 +13,7 @@ from typing import NamedTuple
 from msgspec.structs import replace
 
 from laglab_gateway.config import GatewayConfig
-from laglab_gateway.drive import WHY_STOPPING, Drive, Rejection, Safety
+from laglab_gateway.drive import WHY_STOPPING, Drive, Rejection, Safety, follow
 from laglab_gateway.link.fates import Fates
 from laglab_gateway.link.timeline import Direction
 from laglab_gateway.outcome import Outcome, reason_of
@@ -35,6 +35,8 @@ from laglab_protocol import (
     EndReason,
     Frame,
     Measurement,
+    Message,
+    Planned,
     Recall,
     Restart,
     Sender,
@@ -95,8 +97,15 @@ class Relay(RobotSide):
 
     @property
     def told_robot(self) -> Settings:
-        """Our settings less the delays, which are the link's, behind which the robot is."""
-        return replace(self.settings, command_delay=UNKNOWN_DELAY, measurement_delay=UNKNOWN_DELAY)
+        """Our settings less the delays, which are the link's, behind which the robot is; it has no
+        play-out but ours."""
+        return replace(
+            self.settings,
+            command_delay=UNKNOWN_DELAY,
+            measurement_delay=UNKNOWN_DELAY,
+            command_playout=0,
+            measurement_playout=UNKNOWN_DELAY,
+        )
 
     def hear_robot(self, frame: Frame) -> bool:
         """Take one frame of the robot; True when it begins a new tick, all announced with it.
@@ -134,6 +143,7 @@ class Relay(RobotSide):
         tick, samples = self._heard
         if not self.under_way:
             self.first, self._in_force = tick, tick - 1
+            self._commands.first = tick
             self.under_way = True
         elif tick < self.tick:
             self._meet_anew(tick)
@@ -149,6 +159,7 @@ class Relay(RobotSide):
         self.first, self._in_force = tick - (self.elapsed + 1), tick - 1
         self._answered_through = tick - 1
         self._commands.clear()
+        self._commands.first = self.first
         self._measurements.clear()
         self._asks.clear()
         self._memory.forget()
@@ -169,14 +180,25 @@ class Relay(RobotSide):
         """The frames for the robot: the commands that are to come into force at its next tick."""
         safety = self.safety
         frames: list[bytes] = []
-        for message, _ in self._commands.due(self.elapsed + 1):
-            if isinstance(message, Recall):
-                self._remember(message)
-            elif self._follow(message, self.tick + 1, safety):
-                frames += map(self._to_robot.frame, [*self._asks, self._allowed(message)])
+        came = self._take_commands(self.tick + 1)
+        for asked in came.recalls:
+            self._remember(asked)
+        for planned in came.ready:
+            if self._follow(planned, self.tick + 1, safety):
+                frames += map(self._to_robot.frame, self._allowed(planned))
                 self._asks.clear()
+        if not self.services.arming.armed and self.tick + 1 < self._drive.fresh:
+            frames.append(self._to_robot.frame(self._end_of_plan()))
         self._say_why_stopping(safety)
         return frames
+
+    def _end_of_plan(self) -> Command:
+        """Stand still: a robot that was stopped must not go on by the plan that it has."""
+        standstill = Command(
+            0.0, 0.0, self._drive.command_tick + 1, ROBOT_SYSTEM, ROBOT_COMPONENT, 0
+        )
+        self._drive = follow(standstill, self.tick + 1)
+        return standstill
 
     def _say_why_stopping(self, safety: Safety) -> None:
         """Once, when it stops: the robot itself only knows that nothing comes."""
@@ -194,11 +216,15 @@ class Relay(RobotSide):
         if self._memory.lacks(asked):
             self._asks.append(asked)
 
-    def _allowed(self, command: Command) -> Command:
-        """For the robot, with its stamp, and with what it is asked instead of the estimate."""
-        v, omega = self._armed(command.v, command.omega)
-        asked = len(self._asks)
-        return Command(v, omega, command.tick, ROBOT_SYSTEM, ROBOT_COMPONENT, estimates=asked)
+    def _allowed(self, planned: Planned) -> list[Message]:
+        """For the robot, with its stamp, and with what it is asked instead of the estimate; its
+        plan goes with it, and the robot reads it off."""
+        command = planned.command
+        if not self.services.arming.armed:
+            planned = Planned(replace(command, v=0.0, omega=0.0, plan=0))
+            self._drive = follow(command, self.tick + 1)  # and no plan
+        before = [*self._asks, *planned.frames()]
+        return [*before, replace(planned.command, estimates=len(before))]
 
     def close_tick(self) -> TraceRow:
         """What happened at this tick; the next one, just heard, says what was in force."""

@@ -5,12 +5,14 @@ What moves comes in two kinds: a plant that is stepped (`core`), and a robot wit
 own (`relay`).
 """
 
+import math
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
 
 from laglab_gateway.config import GatewayConfig
-from laglab_gateway.drive import WHY_STOPPING, Drive, Rejection, Safety, follow, rejection
+from laglab_gateway.drive import WHY_STOPPING, Drive, Rejection, Safety, follow_plan, rejection
+from laglab_gateway.incoming import Came, Incoming
 from laglab_gateway.link.channel import Channel
 from laglab_gateway.link.fates import FateKind, Fates
 from laglab_gateway.link.log import LinkRow
@@ -37,6 +39,8 @@ from laglab_protocol import (
     Heartbeat,
     Measurement,
     Message,
+    Plan,
+    Planned,
     Recall,
     Sender,
     Settings,
@@ -75,12 +79,15 @@ class RobotSide(ABC):
         self._sender = sender or Sender(ROBOT_SYSTEM, ROBOT_COMPONENT)
         self._notices: list[Statustext] = []
         fates = fates or {}
-        self._commands: Channel[Command | Recall] = Channel("command", n, Ts, fates.get("command"))
+        self._commands = Incoming(
+            Channel("command", n, Ts, fates.get("command")), config.command_playout
+        )
         self._measurements: Channel[Measurement | Applied] = Channel(
             "measurement", m, Ts, fates.get("measurement")
         )
         self._estimates: deque[Estimate] = deque(maxlen=UNANNOUNCED)
         self._recalls: deque[Recall] = deque(maxlen=UNANNOUNCED)
+        self._plans: deque[Plan] = deque(maxlen=UNANNOUNCED)
         self._memory = SpeedMemory()
         self._owed = Owed()
         self._answered_through = -1
@@ -94,7 +101,7 @@ class RobotSide(ABC):
         self.tick = tick
         self._batch: list[Message] = []
         self._estimates.clear()
-        self._recalls.clear()
+        self._forget_beside()
         self._command: Command | None = None
 
     @property
@@ -124,8 +131,10 @@ class RobotSide(ABC):
     def _tell(self, samples: Iterable[Measurement]) -> list[bytes]:
         """Put samples on the link, and some of what the station asked to be told; the frames: all
         that has come across, and the tick."""
+        bound = self._config.measurement_playout
         for sample in samples:
-            self._measurements.push(self.elapsed, sample)
+            until = sample.tick - self.first + bound if bound else math.inf
+            self._measurements.push(self.elapsed, sample, until)
         for told in self._owed.take():
             self._measurements.push(self.elapsed, told)
         due = [crossing.message for crossing in self._measurements.due(self.elapsed)]
@@ -153,8 +162,10 @@ class RobotSide(ABC):
         match message:
             case Heartbeat():
                 self.connected = True
-            case Command() | Recall() if not is_for_robot(message):
+            case Command() | Recall() | Plan() if not is_for_robot(message):
                 pass  # for another robot on the same line
+            case Plan():
+                self._plans.append(message)
             case Recall():
                 self._recalls.append(message)
             case Estimate() if message.tick == self.tick and not self.answered:
@@ -164,7 +175,7 @@ class RobotSide(ABC):
             case Command() if self._answered_through < message.tick < self.tick:
                 self._push(message)
             case Command():  # said again, or of a tick that has not come, as was asked before it
-                self._recalls.clear()
+                self._forget_beside()
             case Estimate():
                 pass
             case Statustext():
@@ -189,29 +200,46 @@ class RobotSide(ABC):
         return self.services.answer(frame, self.state, asker)
 
     def _take_answer(self, command: Command) -> None:
-        if len(self._estimates) + len(self._recalls) < command.estimates:
+        came = len(self._estimates) + len(self._recalls) + len(self._plans)
+        if came < command.estimates:
             self._estimates.clear()
-            self._recalls.clear()
+            self._forget_beside()
             return  # a frame of this answer was lost: the repeat will bring it whole
         self._command = command
         self._push(command)
 
     def _push(self, command: Command) -> None:
-        """Put it on the link, with what was asked in the same breath, however late it comes."""
+        """Put it on the link, with what was said in the same breath, however late it comes."""
         self._answered_through = command.tick
-        self._commands.push(self.elapsed, command)
-        for recall in self._recalls:
-            self._commands.push(self.elapsed, recall)
-        self._recalls.clear()
+        plans = [plan for plan in self._plans if plan.tick == command.tick]
+        self._commands.push(self.elapsed, command, plans, self._recalls)
+        self._forget_beside()
 
-    def _follow(self, command: Command, tick: int, safety: Safety) -> bool:
+    def _forget_beside(self) -> None:
+        """What goes with a command that is over."""
+        self._recalls.clear()
+        self._plans.clear()
+
+    def _take_commands(self, tick: int) -> Came:
+        """What has come across the link by `tick`; what cannot be followed any more is counted."""
+        came = self._commands.take(tick)
+        for late in came.late:
+            self._refuse(late.command, tick, Rejection.LATE)
+        for command in came.incomplete:
+            self._refuse(command, tick, Rejection.INCOMPLETE)
+        return came
+
+    def _refuse(self, command: Command, tick: int, why: Rejection) -> None:
+        self.audit.refused[why] += 1
+        self.notes.came("command", command.tick, tick, tick - self.first, why.value)
+
+    def _follow(self, planned: Planned, tick: int, safety: Safety) -> bool:
         """Follow from `tick` on a command that came across; False, and counted, when rejected."""
-        if rejected := rejection(self._drive, command, safety):
-            self.audit.refused[rejected] += 1
-            self.notes.came("command", command.tick, tick, tick - self.first, rejected.value)
+        if rejected := rejection(self._drive, planned.command, safety, planned.following):
+            self._refuse(planned.command, tick, rejected)
             self._rejected = rejected if rejected in WHY_STOPPING else self._rejected
             return False
-        self._drive, self._rejected = follow(command, tick), None
+        self._drive, self._rejected = follow_plan(planned, tick), None
         return True
 
     @property

@@ -7,6 +7,7 @@ from laglab_protocol import (
     STATION_SYSTEM,
     Command,
     Frame,
+    Plan,
     Recall,
 )
 
@@ -21,7 +22,7 @@ def from_robot(frame: Frame) -> bool:
     return (frame.system, frame.component) == (ROBOT_SYSTEM, ROBOT_COMPONENT)
 
 
-def is_for_robot(message: Command | Recall) -> bool:
+def is_for_robot(message: Command | Plan | Recall) -> bool:
     """Whether it is meant for the robot, and not for another one on the same line."""
     target = message.target_system, message.target_component
     return target == (ROBOT_SYSTEM, ROBOT_COMPONENT)

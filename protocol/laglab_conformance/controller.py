@@ -1,10 +1,11 @@
 """The items of a controller: we are its robot, and stand at the origin."""
 
 import math
+from typing import TypeAlias
 
 from laglab_conformance.framing import RECEIVING, SENDING, SIGNING
 from laglab_conformance.items import SOON, Item, reacts_soon, refused
-from laglab_conformance.session import NoReactionError, Session
+from laglab_conformance.session import DoesNotApplyError, NoReactionError, Session
 from laglab_protocol.framing.frame import Frame
 from laglab_protocol.messages.base import Message
 from laglab_protocol.messages.loop import (
@@ -18,11 +19,16 @@ from laglab_protocol.messages.loop import (
     EndReason,
     Estimate,
     Measurement,
+    Plan,
     Recall,
     Settings,
     Tick,
 )
 from laglab_protocol.messages.standard import Heartbeat
+from laglab_protocol.plans import Assembly
+
+Said: TypeAlias = Estimate | Recall | Plan | Command
+"""What an answer is made of."""
 
 
 class ControllerSession(Session):
@@ -46,13 +52,13 @@ class ControllerSession(Session):
     def go_on(self) -> None:
         self.tick += 1
 
-    def answer_to(self, *messages: Message) -> list[Estimate | Recall | Command]:
+    def answer_to(self, *messages: Message) -> list[Said]:
         """What came back, up to the command, for these in one datagram. Raises NoReactionError."""
         before = len(self.heard)
         self.send(*messages)
         if self.listen(self.waits.react, lambda frame: isinstance(frame.message, Command)):
             came = [frame.message for frame in self.heard[before:]]
-            return [message for message in came if isinstance(message, Estimate | Recall | Command)]
+            return [message for message in came if isinstance(message, Said)]
         raise NoReactionError(f"no answer to {messages[-1]}")
 
 
@@ -80,7 +86,7 @@ def _answers_whole(session: ControllerSession) -> str | None:
     return None
 
 
-def _stamp(message: Estimate | Recall | Command, tick: int) -> int:
+def _stamp(message: Said, tick: int) -> int:
     return tick if isinstance(message, Recall) else message.tick
 
 
@@ -97,8 +103,33 @@ def _target(command: Command) -> tuple[int, int]:
 
 def _finite(session: ControllerSession) -> str | None:
     for frame in session.heard:
-        if isinstance(frame.message, Command) and not all(map(math.isfinite, frame.message.speeds)):
-            return f"{frame.message}"
+        told = frame.message
+        if isinstance(told, Command) and not all(map(math.isfinite, told.speeds)):
+            return f"{told}"
+        if isinstance(told, Plan) and not all(map(math.isfinite, told.v + told.omega)):
+            return f"{told}"
+    return None
+
+
+def _plans_whole(session: ControllerSession) -> str | None:
+    """All of what a command plans comes before it, and is meant for its tick or later."""
+    answers = 0
+    for _ in range(3):
+        *before, command = session.answer_to(_sample(session.tick), Tick(session.tick, 1))
+        session.go_on()
+        assert isinstance(command, Command)
+        assembly = Assembly()
+        for message in before:
+            if isinstance(message, Plan):
+                assembly.take(message)
+        whole = assembly.take(command)
+        if whole is None:
+            return f"of the plan of command {command.tick} not all comes before it"
+        if whole.in_force is not None and whole.in_force < command.tick:
+            return f"command {command.tick} is planned for tick {whole.in_force}, which is past"
+        answers += command.plan > 0
+    if not answers:
+        raise DoesNotApplyError("its commands have no plans")
     return None
 
 
@@ -185,6 +216,7 @@ ITEMS: list[Item[ControllerSession]] = [
     Item("lock-step", "time does not go back", _backwards),
     Item("lock-step", "commands are meant for the robot", _aims),
     Item("lock-step", "commands are finite", _finite),
+    Item("lock-step", "a plan is whole and not past", _plans_whole),
     Item("lock-step", "it tells its settings", _tells_settings, mandatory=False),
     Item("lock-step", "it asks for what it missed", _asks, mandatory=False),
     Item("timing", f"it answers within {SOON} s", reacts_soon),

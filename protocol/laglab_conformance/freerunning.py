@@ -7,6 +7,7 @@ from itertools import pairwise
 from laglab_conformance.ending import ENDS
 from laglab_conformance.framing import RECEIVING, SENDING, SIGNING
 from laglab_conformance.items import Item
+from laglab_conformance.planning import PLANS
 from laglab_conformance.robot import (
     BEGINS,
     CREEP,
@@ -183,6 +184,7 @@ ITEMS: list[Item[FreeRunningSession]] = [
     NOT_FINITE,
     SETTINGS,
     RECALLS,
+    *PLANS,
     *SERVICES,
     *SIGNING,
     Item("ticks", "each tick comes once", _one_by_one),

@@ -1,10 +1,14 @@
 """The items of a robot in lock-step: each of its ticks waits for the command stamped with it."""
 
+from collections.abc import Callable
 from itertools import pairwise
+
+from msgspec.structs import replace
 
 from laglab_conformance.ending import ENDS, GIVES_UP
 from laglab_conformance.framing import RECEIVING, SENDING, SIGNING
 from laglab_conformance.items import SOON, Item, reacts_soon, refused
+from laglab_conformance.planning import PLANS
 from laglab_conformance.robot import (
     BEGINS,
     NOT_FINITE,
@@ -19,10 +23,14 @@ from laglab_conformance.robot import (
     ticks,
 )
 from laglab_conformance.services import SERVICES
-from laglab_conformance.session import DoesNotApplyError, Session
+from laglab_conformance.session import DoesNotApplyError, NoReactionError, Session
 from laglab_conformance.stamps import STAMPED, no_earlier, tick_comes_first
 from laglab_protocol.framing.frame import Frame
 from laglab_protocol.messages.loop import Command, Tick
+from laglab_protocol.plans import Planned
+
+NEVER = 10**6
+"""[ticks] What is planned for so much later does not come into force here."""
 
 
 class LockstepSession(RobotSession):
@@ -32,6 +40,20 @@ class LockstepSession(RobotSession):
 
     def is_reaction(self, frame: Frame) -> bool:
         return is_after(self.tick, frame)
+
+    def watch(self, until: Callable[[Frame], bool], seconds: float) -> Frame | None:
+        """From tick to tick: each is answered by a plan that is meant for much later."""
+        del seconds  # it goes by ticks
+        seen = len(self.heard)
+        for _ in range(self.longest_delay):
+            if not self.reacts(self.waits.react):
+                raise NoReactionError(f"no reaction to a plan at tick {self.tick}")
+            if found := next(filter(until, self.heard[seen:]), None):
+                return found
+            later = Planned(self.command(self.tick, plan=1), self.tick + NEVER, ((0.0, 0.0),))
+            self.send(*later.frames(), replace(later.command, estimates=1))
+        self.reacts(self.waits.react)
+        return None
 
 
 def _repeats(session: LockstepSession) -> str | None:
@@ -102,6 +124,7 @@ ITEMS: list[Item[LockstepSession]] = [
     Item("timing", f"it goes on within {SOON} s", reacts_soon),
     SETTINGS,
     RECALLS,
+    *PLANS,
     *SERVICES,
     *SIGNING,
     Item("lock-step", "a repeat brings the same messages", _repeats_the_same),

@@ -2,6 +2,7 @@
 
 import math
 import time
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
@@ -46,6 +47,8 @@ class RobotSession(Session):
     tick = 0
     longest_delay = 0
     """Exchanges after the one in which a command was taken, by which a measurement tells of it."""
+    plans = False
+    """Whether it was seen to go on by a plan."""
 
     def __init__(self, endpoint: Endpoint, waits: Waits, key_file: Path | None) -> None:
         super().__init__(endpoint, waits, key_file)
@@ -75,9 +78,13 @@ class RobotSession(Session):
             self.said.add(message.tick)
         return super().forged(message)
 
-    def command(self, tick: int, v: float = 0.0, estimates: int = 0) -> Command:
+    def command(self, tick: int, v: float = 0.0, estimates: int = 0, plan: int = 0) -> Command:
         """Stand still."""
-        return Command(v, 0.0, tick, *self.peer, estimates)
+        return Command(v, 0.0, tick, *self.peer, estimates, plan)
+
+    def watch(self, until: Callable[[Frame], bool], seconds: float) -> Frame | None:
+        """What comes while nothing that is meant for now is commanded any more."""
+        return self.listen(seconds, until)
 
     def go_on(self) -> None:
         self.tick = max(each.tick for each in ticks(self))

@@ -52,8 +52,10 @@ from laglab_protocol.messages.geographic import (
     SetHomePosition,
 )
 from laglab_protocol.messages.loop import (
+    LONGEST_PLAN,
     NO_COMMAND,
     NO_PROBE,
+    PLANNED,
     PROBE_FILLER,
     PROBE_LAGS,
     RECALLED,
@@ -69,6 +71,7 @@ from laglab_protocol.messages.loop import (
     EndReason,
     Estimate,
     Measurement,
+    Plan,
     Probe,
     Recall,
     Settings,
@@ -114,6 +117,8 @@ from laglab_protocol.messages.standard import (
     SystemTime,
     Timesync,
 )
+from laglab_protocol.plans import Assembly, Planned
+from laglab_protocol.playout import Playout
 from laglab_protocol.ration import LEAST_BYTES, Ration
 from laglab_protocol.refusals import Refusals
 from laglab_protocol.restart import Restart
@@ -126,11 +131,13 @@ from laglab_protocol.tlog import TlogError, read_tlog, tlog_record
 __all__ = [
     "EVERY_MESSAGE",
     "LEAST_BYTES",
+    "LONGEST_PLAN",
     "MAV_SEVERITY_EMERGENCY",
     "MAV_SEVERITY_ERROR",
     "MAV_SEVERITY_WARNING",
     "NO_COMMAND",
     "NO_PROBE",
+    "PLANNED",
     "PROBE_FILLER",
     "PROBE_LAGS",
     "RECALLED",
@@ -143,6 +150,7 @@ __all__ = [
     "UNKNOWN_DELAY",
     "Address",
     "Applied",
+    "Assembly",
     "Attitude",
     "AutopilotVersion",
     "AutopilotVersionRequest",
@@ -207,6 +215,9 @@ __all__ = [
     "ParamSet",
     "ParamValue",
     "Ping",
+    "Plan",
+    "Planned",
+    "Playout",
     "PortBusyError",
     "Probe",
     "ProtocolError",

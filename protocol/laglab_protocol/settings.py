@@ -25,6 +25,9 @@ SETTINGS = (
     Setting("omega_max", "turn limit", " rad/s", limit=True),
     Setting("command_delay", "n", " ticks"),
     Setting("measurement_delay", "m", " ticks"),
+    Setting("command_playout", "play-out of commands", " ticks"),
+    Setting("measurement_playout", "play-out of measurements", " ticks"),
+    Setting("plan", "plan", " ticks"),
 )
 
 

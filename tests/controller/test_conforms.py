@@ -47,5 +47,5 @@ def test_our_controller_conforms(tmp_path: Path, line: str, signed: bool) -> Non
 
 def run(endpoint: Endpoint, key_file: Path | None) -> None:
     with Codec(STATION_SYSTEM, STATION_COMPONENT, key_file) as codec:
-        station = Station(StationConfig(estimator="delayed-ekf"), sender=codec.sender)
+        station = Station(StationConfig(estimator="delayed-ekf", plan=40), sender=codec.sender)
         run_station(station, Listener(endpoint, codec.receiver))

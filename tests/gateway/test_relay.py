@@ -4,9 +4,11 @@ from itertools import count
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from laglab_gateway import (
     Event,
+    ExtraDelay,
     GatewayConfig,
     Impairments,
     Outcome,
@@ -33,6 +35,8 @@ from laglab_protocol import (
     Heartbeat,
     Measurement,
     Message,
+    Plan,
+    Planned,
     Recall,
     Receiver,
     Sender,
@@ -72,14 +76,18 @@ class Robot:
     def _told(self) -> list[Message]:
         """What it was asked by its rules: before a command that says so."""
         before: list[Recall] = []
+        plans = 0
         told: list[Message] = []
         for message in self.received:
             if isinstance(message, Recall):
                 before.append(message)
+            elif isinstance(message, Plan):
+                plans += 1
             elif isinstance(message, Command):
-                assert message.estimates == len(before)
+                assert message.estimates == len(before) + plans
                 told += [Applied((0.25,) * 12, (0.5,) * 12, each.first, 12) for each in before]
                 before.clear()
+                plans = 0
         return told
 
 
@@ -153,6 +161,26 @@ def test_both_delays_are_exact_by_the_robots_own_word(n: int, m: int, first: int
     for direction, delay in (("command", n), ("measurement", m)):
         assert getattr(report, direction).measured.min == delay
         assert getattr(report, direction).measured.max == delay
+
+
+@pytest.mark.parametrize("first", [0, 5000])
+def test_in_front_of_a_robot_commands_are_played_out_here(first: int) -> None:
+    jitter = Impairments(extra_delay=ExtraDelay("uniform", 0.03, 0.03))  # up to 6 ticks
+    services = Services(standard_parameters(2, 0, Safety()), placeable=False)
+    config = GatewayConfig(2, 0, 10**6, TS, command_playout=6)
+    fates = RandomFates(jitter, [], np.random.default_rng(1))
+    rig = Rig(Relay(config, services, {"command": fates}), first)
+    rig.run(200)
+    late = {row.tick for row in rig.relay.take_link_rows() if row.fate == "late"}
+    assert 20 < len(late) < 100  # a third
+    held = 0.0
+    for k, row in enumerate(rig.rows):
+        if k >= 6 and k - 6 not in late:
+            held = (first + k - 6) / 1000
+        assert row.v == held
+    assert rig.relay.told_robot.command_playout == 0
+    assert rig.relay.settings.command_playout == 6
+    assert rig.relay.audit.report().refused["late"] == pytest.approx(len(late), abs=6)
 
 
 def test_with_n_zero_a_command_is_in_force_at_the_robots_next_tick() -> None:
@@ -292,6 +320,39 @@ def test_an_emergency_stop_stops_a_real_robot_for_good() -> None:
     assert isinstance(ack, CommandAck)
     assert ack.result == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
     assert rig.relay.services.arming.stopped
+
+
+def planned(tick: int, length: int) -> list[Message]:
+    following = tuple((i / 1000, 0.0) for i in range(length))
+    plan = Planned(Command(1.0, 0.0, tick, 1, 1, 0, length), tick + 2, following)
+    frames = plan.frames()
+    return [*frames, replace(plan.command, estimates=len(frames))]
+
+
+def test_a_plan_is_passed_on_whole_when_its_command_is_due() -> None:
+    rig = Rig(relay(n=2))
+    rig.feed(rig.robot.tick())
+    said = planned(0, 20)
+    rig.say(*said)
+    assert rig.forward() == []
+    rig.feed(rig.robot.tick())
+    assert rig.forward() == said
+    assert rig.forward() == []
+
+
+def test_a_robot_that_is_stopped_does_not_go_on_by_its_plan_though_no_command_comes() -> None:
+    rig = Rig(relay(n=2))
+    rig.feed(rig.robot.tick())
+    rig.say(*planned(0, 200))
+    rig.feed(rig.robot.tick())
+    assert len(rig.forward()) == 15
+    rig.say(CommandLong(1.0, *[0.0] * 6, mavlink.MAV_CMD_DO_FLIGHTTERMINATION, 1, 1, 0))
+    assert rig.forward() == [Command(0.0, 0.0, 1, 1, 1, 0)]
+    rig.feed(rig.robot.tick())
+    assert rig.forward() == []
+    rig.say(*planned(2, 20))
+    rig.feed(rig.robot.tick())
+    assert rig.forward() == [Command(0.0, 0.0, 2, 1, 1, 0)]
 
 
 def test_the_robot_is_greeted_and_ended_as_by_its_station() -> None:

@@ -23,7 +23,6 @@ class FreeRunningRobot(Robot):
     def wait(self) -> None:
         super().wait()
         self.followed = NO_COMMAND
-        self.v = 0.0
         self.fresh = 0.0
         self.under_way: deque[tuple[float, Command]] = deque()
 
@@ -48,7 +47,9 @@ class FreeRunningRobot(Robot):
             self.say_tick(tick)
         self.followed = self.newest
         if self.fault != "moves by itself":
-            self.speed = self.v * self.share()
+            self.speed = self.entry(tick) * self.share()
+            if self.fault == "counts in single precision":
+                (self.speed,) = struct.unpack("f", struct.pack("f", self.speed))
         self.due += self.pause(tick)
         self.tick = tick + (2 if self.fault == "leaves ticks out" and tick % 16 == 0 else 1)
 
@@ -86,6 +87,8 @@ class FreeRunningRobot(Robot):
         again = self.fault == "takes the same stamp twice" and command.tick == self.newest
         older = self.fault == "follows older commands" and command.tick < self.newest
         if command.tick > self.newest or again or older:
-            self.newest, self.v, self.fresh = command.tick, command.v, time.monotonic()
-            if self.fault == "counts in single precision":
-                (self.v,) = struct.unpack("f", struct.pack("f", command.v))
+            before, self.fresh = self.newest, time.monotonic()
+            self.follow(command)
+            if self.newest == before and not again:
+                return
+            self.fresh += PERIOD * len(self.planned.following)

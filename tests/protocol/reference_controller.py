@@ -11,12 +11,17 @@ from laglab_protocol import (
     Estimate,
     Measurement,
     Message,
+    Plan,
+    Planned,
     Recall,
     Settings,
     Tick,
 )
 
 from .peer import ALIVE, Peer
+
+PLAN = 20
+"""Ticks, in two frames."""
 
 
 class Controller(Peer):
@@ -74,6 +79,16 @@ class Controller(Peer):
         estimate: Message = Estimate(*[0.0] * 9, tick=stamp)  # type: ignore[misc]
         if self.missed and self.fault != "does not ask":
             self.missed, estimate = False, Recall(0, 1, 1, 1)
-        command = Command(v, 0.0, tick, target, 1, 1)
+        plans = self.plan(tick)
+        command = Command(v, 0.0, tick, target, 1, 1 + len(plans), PLAN)
         twice = self.fault == "answers twice" and tick > 19
-        self.send(estimate, command, *([estimate, command] if twice else []))
+        said = [estimate, *plans, command]
+        self.send(*said, *(said if twice else []))
+
+    def plan(self, tick: int) -> list[Plan]:
+        """To stand still."""
+        first = (float("inf"), 0.0) if self.fault == "plans infinity" else (0.0, 0.0)
+        in_force = max(tick - 1, 0) if self.fault == "plans for the past" else tick
+        following = (first, *((0.0, 0.0),) * (PLAN - 1))
+        frames = Planned(Command(0.0, 0.0, tick, 1, 1, 0, PLAN), in_force, following).frames()
+        return frames[1:] if self.fault == "plans in part" else frames

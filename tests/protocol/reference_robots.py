@@ -8,6 +8,7 @@ from msgspec.structs import replace
 from laglab_protocol import (
     NO_COMMAND,
     Applied,
+    Assembly,
     AutopilotVersion,
     Command,
     CommandAck,
@@ -23,6 +24,8 @@ from laglab_protocol import (
     ParamRequestRead,
     ParamValue,
     Ping,
+    Plan,
+    Planned,
     Recall,
     Settings,
     Tick,
@@ -52,6 +55,8 @@ class Robot(Peer):
         self.slow_until = 0
         self.estimates = 0
         self.repeats = 0
+        self.planned = Planned(Command(0.0, 0.0, NO_COMMAND, 1, 1, 0))
+        self.assembly = Assembly()
         self.owed: Applied | None = None
         self.telling: Applied | None = None
         self.told = -1
@@ -96,6 +101,9 @@ class Robot(Peer):
         match message:
             case Heartbeat() if self.tick is None:
                 self.begin()
+            case Plan():
+                self.estimates += 1
+                self.hear_plan(message)
             case Estimate() | Recall():
                 self.estimates += 1
                 self.serve(message)
@@ -137,10 +145,31 @@ class Robot(Peer):
         if command.tick - self.tick in ticks and whole:
             self.estimates = 0
             self.slow = self.tick < self.slow_until
-            self.speed = 0.1 if self.fault == "moves by itself" else command.v
-            self.newest = self.tick
+            self.follow(command)
+            self.newest = min(self.newest, self.tick)
+            self.speed = 0.1 if self.fault == "moves by itself" else self.entry(self.tick)
             self.tick += 2 if self.fault == "leaves ticks out" and self.tick > 12 else 1
             self.say_tick(self.tick)
+
+    def hear_plan(self, plan: Plan) -> None:
+        if self.fault != "has no plans":
+            self.assembly.take(plan)
+
+    def follow(self, command: Command) -> None:
+        """Unless it lacks a part of its plan, or is meant for later."""
+        assert self.tick is not None
+        alone = self.fault in ("has no plans", "follows plans in part")
+        plain = Planned(replace(command, plan=0))
+        whole = plain if self.fault == "has no plans" else self.assembly.take(command)
+        whole = whole or (plain if alone else None)
+        if whole and (whole.in_force or 0) <= self.tick:
+            self.newest, self.planned = command.tick, whole
+
+    def entry(self, tick: int) -> float:
+        """Of the newest plan, at this tick."""
+        command, first, following = self.planned
+        ahead = 0 if first is None else min(tick - first, len(following))
+        return following[ahead - 1][0] if ahead > 0 else command.v
 
     def serve(self, message: Message) -> None:
         number = 1 if self.fault == "loses parameters" else 2

@@ -16,6 +16,7 @@ MISSED = {
     "a false start before a frame costs nothing",
     "it tells its settings",
     "it recalls what was in force",
+    "it goes on by the plan of a command",
     "it reports Heartbeat on request",
     "it reports AutopilotVersion on request",
     "it lists its parameters",

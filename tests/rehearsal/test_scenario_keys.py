@@ -59,11 +59,14 @@ EVENT: Keys = {
     "link": table(IMPAIRMENTS),
     "direction": st.sampled_from(["command", "measurement", "both"]),
 }
+PLAYOUT: Keys = dict.fromkeys(("command", "measurement"), st.sampled_from([0, 65534]))
 LINK: Keys = {
     "command_delay": TICKS,
     "measurement_delay": TICKS,
     "command": table(IMPAIRMENTS),
     "measurement": table(IMPAIRMENTS),
+    "playout": table(PLAYOUT),
+    "plan": st.integers(0, 240),
     "event": st.lists(table(EVENT), max_size=2),
     "replay": st.sampled_from(["link.csv", "./link.csv", "earlier run/link.csv"]),
 }
@@ -195,6 +198,7 @@ def test_the_strategies_know_every_key() -> None:
         *(f"estimator.{key}" for key in ESTIMATOR),
         *(f"law.{key}" for key in {**LAW, **WITH_A_PATH}),
         *(f"link.{key}" for key in LINK),
+        *(f"link.playout.{key}" for key in PLAYOUT),
         *(f"safety.{key}" for key in SAFETY),
         *(f"origin.{key}" for key in ORIGIN),
         *(f"link.event.{ANY}.{key}" for key in EVENT),

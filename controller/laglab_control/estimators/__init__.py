@@ -11,6 +11,7 @@ from laglab_control.estimators.popf import Popf
 from laglab_control.estimators.popf_exact import PopfExact
 from laglab_control.estimators.popf_literal import LiteralPopf
 from laglab_control.estimators.rewinding import Rewinding
+from laglab_control.estimators.tue_predictor import TuePredictor
 from laglab_control.estimators.wheel_scales import WheelScales
 from laglab_control.estimators.windows import ReplayedInputs, RigidMotions
 
@@ -34,6 +35,7 @@ __all__ = [
     "RigidMotions",
     "State",
     "Taken",
+    "TuePredictor",
     "WheelScales",
     "estimator_kind",
 ]

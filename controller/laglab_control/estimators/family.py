@@ -14,6 +14,7 @@ from laglab_control.estimators.popf import Popf
 from laglab_control.estimators.popf_exact import PopfExact
 from laglab_control.estimators.raw import Raw
 from laglab_control.estimators.rewinding import Rewinding
+from laglab_control.estimators.tue_predictor import TuePredictor
 from laglab_control.estimators.wheel_scales import WheelScales
 from laglab_control.estimators.windows import RigidMotions
 from laglab_control.plugins import Maker, find_plugin, first_line
@@ -62,6 +63,10 @@ ESTIMATORS: Mapping[str, EstimatorKind] = {
     "popf-exact": EstimatorKind(
         "the structure of popf with the true cross-covariances",
         lambda model: Rewinding(PopfExact(model)),
+    ),
+    "tue-predictor": EstimatorKind(
+        "a copy of the robot, pulled to where the robot was seen to have been",
+        lambda model: Rewinding(TuePredictor(model)),
     ),
     "delayed-ekf": EstimatorKind(
         "the optimum: an EKF at the measurement's tick, carried forward over the known inputs",

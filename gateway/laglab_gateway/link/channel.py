@@ -51,12 +51,13 @@ class Channel(Generic[M]):
         self._frame = (-1, 0)
         self._waiting: list[tuple[int, int, Crossing[M]]] = []
 
-    def push(self, tick: int, message: M) -> None:
-        """Put in `message` at `tick`; ticks never go back."""
+    def push(self, tick: int, message: M, until: float = math.inf) -> None:
+        """Put in `message` at `tick`; ticks never go back. What comes out after the tick `until` is
+        of no use any more, and logged as late."""
         if self._fates is None:
             self._hold(tick, message, 0)
         else:
-            self._impair(tick, message, self._fates)
+            self._impair(tick, message, until, self._fates)
 
     def due(self, tick: int) -> list[Crossing[M]]:
         """Take out all that has waited long enough: by its time, then in the order of entering."""
@@ -79,15 +80,17 @@ class Channel(Generic[M]):
         due = tick + self._delay + extra_ticks
         heapq.heappush(self._waiting, (due, self._entered, Crossing(message, tick)))
 
-    def _impair(self, tick: int, message: M, fates: Fates) -> None:
+    def _impair(self, tick: int, message: M, until: float, fates: Fates) -> None:
         number = self._number(tick)
         raw = self._bytes_of(message)
         for copy, fate in enumerate(fates.of(tick, tick * self._sample_time, raw)):
-            row = LinkRow(self._direction, tick, number, copy, len(raw), fate.kind, fate.extra)
+            extra = math.ceil(fate.extra / self._sample_time - ROUNDING)
+            late = fate.kind is FateKind.DELIVERED and tick + self._delay + extra > until
+            kind = FateKind.LATE if late else fate.kind
+            row = LinkRow(self._direction, tick, number, copy, len(raw), kind, fate.extra)
             self._log.append(row)
             received = _received(fate.kind, message, fate.raw)
             if received is not None:
-                extra = math.ceil(fate.extra / self._sample_time - ROUNDING)
                 self._hold(tick, received, extra)
 
     def _number(self, tick: int) -> int:

@@ -24,6 +24,8 @@ class FateKind(StrEnum):
     OUTAGE = "outage"
     QUEUE_FULL = "queue-full"
     CORRUPTED = "corrupted"
+    LATE = "late"
+    """Delivered, when play-out had no more use for it."""
 
 
 class Fate(NamedTuple):

@@ -39,7 +39,7 @@ class RecordedFates:
         self._fates: dict[int, dict[int, list[tuple[FateKind, float]]]] = {}
         for row in rows:
             frames = self._fates.setdefault(row.tick, {})
-            frames.setdefault(row.frame, []).append((FateKind(row.fate), row.extra))
+            frames.setdefault(row.frame, []).append((_done(row.fate), row.extra))
         self._tick, self._frame = -1, 0
 
     def of(self, tick: int, time: float, raw: bytes) -> list[Fate]:  # noqa: ARG002 the tick tells
@@ -64,6 +64,12 @@ def recorded_ticks(*directions: Sequence[LinkRow]) -> range:
     """The ticks that the rows tell of, from the first to the last of any direction."""
     ticks = [row.tick for rows in directions for row in rows]
     return range(min(ticks), max(ticks) + 1) if ticks else range(0)
+
+
+def _done(fate: str) -> FateKind:
+    """By the link: who was late for play-out was delivered."""
+    kind = FateKind(fate)
+    return FateKind.DELIVERED if kind is FateKind.LATE else kind
 
 
 def read_link_log(path: Path, direction: Direction) -> list[LinkRow]:

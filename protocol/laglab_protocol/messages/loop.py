@@ -23,13 +23,18 @@ NO_COMMAND = -1
 UNANNOUNCED = 256
 """More frames than LAGLAB_TICK or LAGLAB_COMMAND can announce: so many are never asked for."""
 
-DIALECT_VERSION = 2
+DIALECT_VERSION = 3
 """As the dialect's XML has it."""
 
 UNKNOWN_DELAY = 65535
 
 RECALLED = 12
 """Ticks that one LAGLAB_APPLIED tells of."""
+
+PLANNED = 15
+"""Ticks that one LAGLAB_PLAN plans for."""
+LONGEST_PLAN = 240
+"""Ticks: sixteen frames, that one LAGLAB_COMMAND can announce and one datagram carry."""
 
 NO_PROBE = 4294967295
 """In Probe.came, where none is told of."""
@@ -84,7 +89,8 @@ class Measurement(Message, frozen=True):
 
 
 class Command(Message, frozen=True):
-    """Station: the command for `tick` [m/s, rad/s]; so many estimates precede it."""
+    """Station: the command for `tick` [m/s, rad/s]; so many other frames precede it, and it plans
+    for so many ticks more."""
 
     v: float
     omega: float
@@ -92,6 +98,7 @@ class Command(Message, frozen=True):
     target_system: int
     target_component: int
     estimates: int
+    plan: int = 0
 
     @property
     def speeds(self) -> tuple[float, float]:
@@ -128,7 +135,7 @@ class End(Message, frozen=True):
 
 class Settings(Message, frozen=True):
     """Either side: what it was told of the run [s, m, m/s, rad/s, ticks]; NaN and 65535: not known,
-    an infinite limit: none."""
+    an infinite limit: none. A play-out or plan of 0: none."""
 
     sample_time: float
     wheel_radius: float = math.nan
@@ -138,6 +145,9 @@ class Settings(Message, frozen=True):
     command_delay: int = UNKNOWN_DELAY
     measurement_delay: int = UNKNOWN_DELAY
     dialect: int = DIALECT_VERSION
+    command_playout: int = 0
+    measurement_playout: int = 0
+    plan: int = 0
 
 
 class Recall(Message, frozen=True):
@@ -157,6 +167,19 @@ class Applied(Message, frozen=True):
     omega: tuple[float, ...]
     first: int
     count: int
+
+
+class Plan(Message, frozen=True):
+    """Station: the speeds [m/s, rad/s] that are to follow the command of `tick`, which is meant for
+    the tick `in_force`: element i here is for in_force + first + i."""
+
+    v: tuple[float, ...]
+    omega: tuple[float, ...]
+    tick: int
+    in_force: int
+    first: int
+    target_system: int
+    target_component: int
 
 
 class Probe(Message, frozen=True):
@@ -180,6 +203,7 @@ WRITTEN_OUT: dict[str, type[Message]] = {
     "LAGLAB_SETTINGS": Settings,
     "LAGLAB_RECALL": Recall,
     "LAGLAB_APPLIED": Applied,
+    "LAGLAB_PLAN": Plan,
     "LAGLAB_PROBE": Probe,
     **STANDARD,
     **GEOGRAPHIC,

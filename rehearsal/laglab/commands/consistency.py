@@ -55,7 +55,7 @@ def consistency(
     _check(scenario, seeds)
     runs = samples(scenario, names, seeds, workers or os.cpu_count() or 1)
     got = list(tracked(runs, seeds, "consistency", "seed"))
-    m = scenario.link.measurement_delay
+    m = scenario.link.m
     verdicts = [verdict(name, [sample[name] for sample in got], m) for name in names]
     console = Console()
     console.print(consistency_table(scenario, verdicts, seeds))
@@ -65,7 +65,7 @@ def consistency(
 
 def _check(scenario: Scenario, seeds: int) -> None:
     """Raises: ScenarioError, when there is nothing to judge, or not so many seeds."""
-    m = scenario.link.measurement_delay
+    m = scenario.link.m
     if scenario.must_end() < m:
         raise ScenarioError(f"{scenario.name}: the run is over before a measurement has arrived")
     nth(scenario, seeds - 1)

@@ -45,7 +45,7 @@ class Session(Recorder):
         self._arrivals: SimpleQueue[ArrivalRow] = SimpleQueue()
         self._claims: dict[int, ClaimRow] = {}
         self._told: SimpleQueue[ClaimRow] = SimpleQueue()
-        behind = scenario.link.measurement_delay + BEHIND
+        behind = scenario.link.m + BEHIND
         session = heard(decoded(iter(self._frames.get, b"")))
         Thread(
             target=record_session, args=(session, scenario.sample_time, self, behind), daemon=True

@@ -67,7 +67,7 @@ def complete(
         ResultsError: something cannot be written.
     """
     try:
-        numbers = digest(trace_pieces(directory / TRACE_FILE), scenario.link.measurement_delay)
+        numbers = digest(trace_pieces(directory / TRACE_FILE), scenario.link.m)
     except TraceError as error:
         raise nothing_recorded(ending, str(error)) from None
     failed: list[str] = []
@@ -97,8 +97,8 @@ def keep(scenario: Scenario, way: Way, ending: Ending, recorder: MemoryRecorder)
     for name in names:
         rows = list(until_it_fails(shadow_rows(scenario, name, session), failed.append))
         shadows[name] = collected(rows)
-        compared[name] = shadow_error(rows, [trace], scenario.link.measurement_delay)
-    numbers = digest([trace], scenario.link.measurement_delay)
+        compared[name] = shadow_error(rows, [trace], scenario.link.m)
+    numbers = digest([trace], scenario.link.m)
     following = followed([trace], target(scenario), numbers.rows)
     ending = replace(ending, warnings=(*ending.warnings, *failed))
     summary = summarise(scenario, way, ending, numbers, compared, following)
@@ -137,7 +137,7 @@ def _shadowed(scenario: Scenario, name: str, directory: Path, failed: list[str])
     )
     written = kept_rows(rows, shadow_file(directory, name))
     pieces = trace_pieces(directory / TRACE_FILE)
-    return shadow_error(written, pieces, scenario.link.measurement_delay)
+    return shadow_error(written, pieces, scenario.link.m)
 
 
 def summarise(
@@ -165,8 +165,8 @@ def summarise(
         plant=way.plant,
         estimator=scenario.estimator.kind,
         law=scenario.law.kind,
-        n=scenario.link.command_delay,
-        m=scenario.link.measurement_delay,
+        n=scenario.link.n,
+        m=scenario.link.m,
         seed=scenario.seed,
         ticks=ticks,
         pose=numbers.seen,

@@ -57,7 +57,8 @@ LINK = (
     Column(
         "fate",
         "-",
-        "`delivered`, `lost`, `burst` (lost in a bad spell), `outage`, `queue-full`, `corrupted`.",
+        "`delivered`, `lost`, `burst` (lost in a bad spell), `outage`, `queue-full`, `corrupted`, "
+        "`late` (delivered too late for play-out).",
     ),
     Column("extra", "s", "How much later than the fixed delay."),
 )

@@ -80,7 +80,7 @@ def replayed_run(directory: Path, replays: Replays) -> Run:
     tables = {name: read_columns(directory / name, kind) for name, kind in ROWS.items()}
     estimator = run.scenario.estimator.model_copy(update={"compare": tuple(replays)})
     scenario = run.scenario.model_copy(update={"estimator": estimator})
-    m = scenario.link.measurement_delay
+    m = scenario.link.m
     others = {name: rms_error(off(each, run.trace)[1][m:]) for name, each in replays.items()}
     summary = run.summary
     compare = {summary.estimator: summary.rms_error, **others} if replays else {}

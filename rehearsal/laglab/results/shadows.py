@@ -45,7 +45,8 @@ def shadow_rows(
     """
     own = scenario.estimator.kind == name
     told = {} if own else {"estimator.kind": name, "estimator.options": {}}
-    return shadow(without_blind_guard(station_config(changed(scenario, told))), session)
+    config = without_blind_guard(station_config(changed(scenario, told)))
+    return shadow(config, session, scenario.link.playout.measurement)
 
 
 def until_it_fails(rows: Iterable[ShadowRow], fail: Callable[[str], None]) -> Iterator[ShadowRow]:

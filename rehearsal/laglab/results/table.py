@@ -107,6 +107,8 @@ def _station_rows(station: StationReport) -> dict[str, str]:
         rows["alarms at ticks"] = alarm_ticks(station)
     if station.gated:
         rows["wild measurements"] = f"{station.gated}, not used"
+    if station.late:
+        rows["late measurements"] = f"{station.late}, not used: too late for play-out"
     for each in station.calibration:
         rows[each.name] = f"{100 * each.value:+.1f} % ± {100 * each.deviation:.1f} %"
     if station.tick_p50_s is not None and station.tick_p99_s is not None:

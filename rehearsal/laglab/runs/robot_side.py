@@ -117,6 +117,9 @@ def gateway_config(scenario: Scenario) -> GatewayConfig:
         safety=scenario.safety,
         wheel_radius=scenario.plant.wheel_radius,
         track=scenario.plant.track,
+        command_playout=scenario.link.playout.command,
+        measurement_playout=scenario.link.playout.measurement,
+        plan=scenario.link.plan,
     )
 
 

@@ -62,7 +62,8 @@ def station_config(scenario: Scenario) -> StationConfig:
         goal=scenario.goal,
         initial_estimate=scenario.first_estimate(),
         initial_covariance=scenario.estimator.initial_covariance * np.eye(3),
-        command_delay=scenario.link.command_delay,
+        command_delay=scenario.link.n,
+        plan=scenario.link.plan,
         guard=scenario.estimator.guard,
     )
 
@@ -78,6 +79,9 @@ def station_settings(scenario: Scenario) -> Settings:
         omega_max=math.inf if omega_max is None else omega_max,
         command_delay=scenario.link.command_delay,
         measurement_delay=scenario.link.measurement_delay,
+        command_playout=scenario.link.playout.command,
+        measurement_playout=scenario.link.playout.measurement,
+        plan=scenario.link.plan,
     )
 
 
@@ -93,6 +97,7 @@ def make_station(
         clock=time.monotonic_ns,
         sender=sender,
         settings=station_settings(scenario),
+        playout=scenario.link.playout.measurement,
     )
 
 

@@ -122,7 +122,7 @@ class Scenario(Table):
     @property
     def gist(self) -> str:
         """Law, unless it is the polar one, filter, delays and noise, in a few words."""
-        n, m = self.link.command_delay, self.link.measurement_delay
+        n, m = self.link.n, self.link.m
         noise = "on" if self.noise else "off"
         law = "" if self.law.kind == "polar" else f"{self.law.kind}, "
         return f"{law}{self.estimator.kind}, n = {n}, m = {m}, noise {noise}"

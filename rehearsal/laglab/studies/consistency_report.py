@@ -28,7 +28,7 @@ def consistency_table(scenario: Scenario, verdicts: Sequence[Verdict], seeds: in
     low, high = verdicts[0].bounds
     table = plain_table(
         title=f"{scenario.name}: P_0 = {scenario.estimator.initial_covariance:g} I, n = "
-        f"{scenario.link.command_delay}, m = {scenario.link.measurement_delay}, {seeds} seeds",
+        f"{scenario.link.n}, m = {scenario.link.m}, {seeds} seeds",
         caption="In the loop, over its link. Of a consistent filter NEES and\n"
         f"NIS average 3, here {low:.2f} to {high:.2f} (95 %); %: of ticks within.\n"
         "Ahead: NEES of the prediction by which the command was made.\n"
@@ -64,7 +64,7 @@ def draw_consistency(
 ) -> Figure:
     """Average NEES, NIS and NEES of the prediction against their bounds, a panel a filter; and by
     how much each filter claims more, or less, than is true."""
-    m = scenario.link.measurement_delay
+    m = scenario.link.m
     ticks = np.arange(len(verdicts[0].nees.values)) + m
     time = np.asarray(ticks * scenario.sample_time, dtype=np.float64)
     with printed():

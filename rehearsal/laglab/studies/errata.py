@@ -80,8 +80,8 @@ def costs_table(scenario: Scenario, rows: list[Cost]) -> Table:
     """One line a variant."""
     table = plain_table(
         *("as printed in", "without noise", "converges", "with noise", "diverged"),
-        title=f"{scenario.name}: popf, n = {scenario.link.command_delay}, "
-        f"m = {scenario.link.measurement_delay}, P_0 = {scenario.estimator.initial_covariance:g} I",
+        title=f"{scenario.name}: popf, n = {scenario.link.n}, "
+        f"m = {scenario.link.m}, P_0 = {scenario.estimator.initial_covariance:g} I",
         caption="RMS error of the estimate in x (m), y (m), θ (rad); diverged: runs with noise",
     )
     for row in rows:

@@ -73,6 +73,10 @@ def why_one_by_one(scenario: Scenario) -> str | None:
         f"of {scenario.plant.called} there is one a run, and no fleet (plant)": (
             not scenario.plant.has_fleet
         ),
+        "there are no plans for many robots (plan)": link.plan > 0,
+        "there is no play-out for many robots (playout)": bool(
+            link.playout.command or link.playout.measurement
+        ),
         "somebody moves the robot (plant.event)": bool(scenario.plant.event),
         "the run does not end by itself (duration)": scenario.last_tick is None,
         "the clock paces it (pace)": scenario.pace != "lockstep",

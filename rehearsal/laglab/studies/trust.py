@@ -131,7 +131,7 @@ def tried(trial: Trial) -> Fared:
     scenario = trial.scenario
     said: dict[str, list[Known]] = {}
     done = run(scenario, controller=partial(Overhearing, said=said))
-    nees = judged(said[scenario.estimator.kind], done.trace).nees[scenario.link.measurement_delay :]
+    nees = judged(said[scenario.estimator.kind], done.trace).nees[scenario.link.m :]
     rms = done.summary.rms_error
     return Fared(
         trial.condition,

@@ -6353,6 +6353,7 @@ MAVLINK_MSG_ID_LAGLAB_END = 52104
 MAVLINK_MSG_ID_LAGLAB_SETTINGS = 52105
 MAVLINK_MSG_ID_LAGLAB_RECALL = 52106
 MAVLINK_MSG_ID_LAGLAB_APPLIED = 52107
+MAVLINK_MSG_ID_LAGLAB_PLAN = 52108
 MAVLINK_MSG_ID_LAGLAB_PROBE = 52110
 MAVLINK_MSG_ID_SYS_STATUS = 1
 MAVLINK_MSG_ID_SYSTEM_TIME = 2
@@ -6701,22 +6702,22 @@ class MAVLink_laglab_command_message(MAVLink_message):
 
     id = MAVLINK_MSG_ID_LAGLAB_COMMAND
     msgname = "LAGLAB_COMMAND"
-    fieldnames = ["v", "omega", "tick", "target_system", "target_component", "estimates"]
-    ordered_fieldnames = ["v", "omega", "tick", "target_system", "target_component", "estimates"]
-    fieldtypes = ["double", "double", "uint32_t", "uint8_t", "uint8_t", "uint8_t"]
+    fieldnames = ["v", "omega", "tick", "target_system", "target_component", "estimates", "plan"]
+    ordered_fieldnames = ["v", "omega", "tick", "target_system", "target_component", "estimates", "plan"]
+    fieldtypes = ["double", "double", "uint32_t", "uint8_t", "uint8_t", "uint8_t", "uint16_t"]
     fielddisplays_by_name: Dict[str, str] = {}
     fieldenums_by_name: Dict[str, str] = {}
     fieldunits_by_name: Dict[str, str] = {"v": "m/s", "omega": "rad/s"}
-    native_format = bytearray(b"<ddIBBB")
-    orders = [0, 1, 2, 3, 4, 5]
-    lengths = [1, 1, 1, 1, 1, 1]
-    array_lengths = [0, 0, 0, 0, 0, 0]
+    native_format = bytearray(b"<ddIBBBH")
+    orders = [0, 1, 2, 3, 4, 5, 6]
+    lengths = [1, 1, 1, 1, 1, 1, 1]
+    array_lengths = [0, 0, 0, 0, 0, 0, 0]
     crc_extra = 96
-    unpacker = struct.Struct("<ddIBBB")
+    unpacker = struct.Struct("<ddIBBBH")
     instance_field = None
     instance_offset = -1
 
-    def __init__(self, v: float, omega: float, tick: int, target_system: int, target_component: int, estimates: int):
+    def __init__(self, v: float, omega: float, tick: int, target_system: int, target_component: int, estimates: int, plan: int = 0):
         MAVLink_message.__init__(self, MAVLink_laglab_command_message.id, MAVLink_laglab_command_message.msgname)
         self._fieldnames = MAVLink_laglab_command_message.fieldnames
         self._instance_field = MAVLink_laglab_command_message.instance_field
@@ -6727,9 +6728,10 @@ class MAVLink_laglab_command_message(MAVLink_message):
         self.target_system = target_system
         self.target_component = target_component
         self.estimates = estimates
+        self.plan = plan
 
     def pack(self, mav: "MAVLink", force_mavlink1: bool = False) -> bytes:
-        return self._pack(mav, self.crc_extra, self.unpacker.pack(self.v, self.omega, self.tick, self.target_system, self.target_component, self.estimates), force_mavlink1=force_mavlink1)
+        return self._pack(mav, self.crc_extra, self.unpacker.pack(self.v, self.omega, self.tick, self.target_system, self.target_component, self.estimates, self.plan), force_mavlink1=force_mavlink1)
 
 
 # Define name on the class for backwards compatibility (it is now msgname).
@@ -6835,22 +6837,22 @@ class MAVLink_laglab_settings_message(MAVLink_message):
 
     id = MAVLINK_MSG_ID_LAGLAB_SETTINGS
     msgname = "LAGLAB_SETTINGS"
-    fieldnames = ["sample_time", "wheel_radius", "track", "v_max", "omega_max", "command_delay", "measurement_delay", "dialect"]
-    ordered_fieldnames = ["sample_time", "wheel_radius", "track", "v_max", "omega_max", "command_delay", "measurement_delay", "dialect"]
-    fieldtypes = ["double", "double", "double", "double", "double", "uint16_t", "uint16_t", "uint8_t"]
+    fieldnames = ["sample_time", "wheel_radius", "track", "v_max", "omega_max", "command_delay", "measurement_delay", "dialect", "command_playout", "measurement_playout", "plan"]
+    ordered_fieldnames = ["sample_time", "wheel_radius", "track", "v_max", "omega_max", "command_delay", "measurement_delay", "dialect", "command_playout", "measurement_playout", "plan"]
+    fieldtypes = ["double", "double", "double", "double", "double", "uint16_t", "uint16_t", "uint8_t", "uint16_t", "uint16_t", "uint16_t"]
     fielddisplays_by_name: Dict[str, str] = {}
     fieldenums_by_name: Dict[str, str] = {}
     fieldunits_by_name: Dict[str, str] = {"sample_time": "s", "wheel_radius": "m", "track": "m", "v_max": "m/s", "omega_max": "rad/s"}
-    native_format = bytearray(b"<dddddHHB")
-    orders = [0, 1, 2, 3, 4, 5, 6, 7]
-    lengths = [1, 1, 1, 1, 1, 1, 1, 1]
-    array_lengths = [0, 0, 0, 0, 0, 0, 0, 0]
+    native_format = bytearray(b"<dddddHHBHHH")
+    orders = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10]
+    lengths = [1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]
+    array_lengths = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]
     crc_extra = 77
-    unpacker = struct.Struct("<dddddHHB")
+    unpacker = struct.Struct("<dddddHHBHHH")
     instance_field = None
     instance_offset = -1
 
-    def __init__(self, sample_time: float, wheel_radius: float, track: float, v_max: float, omega_max: float, command_delay: int, measurement_delay: int, dialect: int):
+    def __init__(self, sample_time: float, wheel_radius: float, track: float, v_max: float, omega_max: float, command_delay: int, measurement_delay: int, dialect: int, command_playout: int = 0, measurement_playout: int = 0, plan: int = 0):
         MAVLink_message.__init__(self, MAVLink_laglab_settings_message.id, MAVLink_laglab_settings_message.msgname)
         self._fieldnames = MAVLink_laglab_settings_message.fieldnames
         self._instance_field = MAVLink_laglab_settings_message.instance_field
@@ -6863,9 +6865,12 @@ class MAVLink_laglab_settings_message(MAVLink_message):
         self.command_delay = command_delay
         self.measurement_delay = measurement_delay
         self.dialect = dialect
+        self.command_playout = command_playout
+        self.measurement_playout = measurement_playout
+        self.plan = plan
 
     def pack(self, mav: "MAVLink", force_mavlink1: bool = False) -> bytes:
-        return self._pack(mav, self.crc_extra, self.unpacker.pack(self.sample_time, self.wheel_radius, self.track, self.v_max, self.omega_max, self.command_delay, self.measurement_delay, self.dialect), force_mavlink1=force_mavlink1)
+        return self._pack(mav, self.crc_extra, self.unpacker.pack(self.sample_time, self.wheel_radius, self.track, self.v_max, self.omega_max, self.command_delay, self.measurement_delay, self.dialect, self.command_playout, self.measurement_playout, self.plan), force_mavlink1=force_mavlink1)
 
 
 # Define name on the class for backwards compatibility (it is now msgname).
@@ -6959,6 +6964,53 @@ class MAVLink_laglab_applied_message(MAVLink_message):
 # Define name on the class for backwards compatibility (it is now msgname).
 # Done with setattr to hide the class variable from mypy.
 setattr(MAVLink_laglab_applied_message, "name", mavlink_msg_deprecated_name_property())
+
+
+class MAVLink_laglab_plan_message(MAVLink_message):
+    """
+    Station to robot: the speeds that are to follow a command if none
+    newer comes. Sent before the LAGLAB_COMMAND with the same tick, in
+    as many frames as its plan needs, and counted there. A robot that
+    does not plan passes it over and follows the command alone.
+    """
+
+    id = MAVLINK_MSG_ID_LAGLAB_PLAN
+    msgname = "LAGLAB_PLAN"
+    fieldnames = ["v", "omega", "tick", "in_force", "first", "target_system", "target_component"]
+    ordered_fieldnames = ["v", "omega", "tick", "in_force", "first", "target_system", "target_component"]
+    fieldtypes = ["double", "double", "uint32_t", "uint32_t", "uint16_t", "uint8_t", "uint8_t"]
+    fielddisplays_by_name: Dict[str, str] = {}
+    fieldenums_by_name: Dict[str, str] = {}
+    fieldunits_by_name: Dict[str, str] = {"v": "m/s", "omega": "rad/s"}
+    native_format = bytearray(b"<ddIIHBB")
+    orders = [0, 1, 2, 3, 4, 5, 6]
+    lengths = [15, 15, 1, 1, 1, 1, 1]
+    array_lengths = [15, 15, 0, 0, 0, 0, 0]
+    crc_extra = 15
+    unpacker = struct.Struct("<15d15dIIHBB")
+    instance_field = None
+    instance_offset = -1
+
+    def __init__(self, v: Sequence[float], omega: Sequence[float], tick: int, in_force: int, first: int, target_system: int, target_component: int):
+        MAVLink_message.__init__(self, MAVLink_laglab_plan_message.id, MAVLink_laglab_plan_message.msgname)
+        self._fieldnames = MAVLink_laglab_plan_message.fieldnames
+        self._instance_field = MAVLink_laglab_plan_message.instance_field
+        self._instance_offset = MAVLink_laglab_plan_message.instance_offset
+        self.v = v
+        self.omega = omega
+        self.tick = tick
+        self.in_force = in_force
+        self.first = first
+        self.target_system = target_system
+        self.target_component = target_component
+
+    def pack(self, mav: "MAVLink", force_mavlink1: bool = False) -> bytes:
+        return self._pack(mav, self.crc_extra, self.unpacker.pack(self.v[0], self.v[1], self.v[2], self.v[3], self.v[4], self.v[5], self.v[6], self.v[7], self.v[8], self.v[9], self.v[10], self.v[11], self.v[12], self.v[13], self.v[14], self.omega[0], self.omega[1], self.omega[2], self.omega[3], self.omega[4], self.omega[5], self.omega[6], self.omega[7], self.omega[8], self.omega[9], self.omega[10], self.omega[11], self.omega[12], self.omega[13], self.omega[14], self.tick, self.in_force, self.first, self.target_system, self.target_component), force_mavlink1=force_mavlink1)
+
+
+# Define name on the class for backwards compatibility (it is now msgname).
+# Done with setattr to hide the class variable from mypy.
+setattr(MAVLink_laglab_plan_message, "name", mavlink_msg_deprecated_name_property())
 
 
 class MAVLink_laglab_probe_message(MAVLink_message):
@@ -17090,6 +17142,7 @@ mavlink_map: Dict[int, Type[MAVLink_message]] = {
     MAVLINK_MSG_ID_LAGLAB_SETTINGS: MAVLink_laglab_settings_message,
     MAVLINK_MSG_ID_LAGLAB_RECALL: MAVLink_laglab_recall_message,
     MAVLINK_MSG_ID_LAGLAB_APPLIED: MAVLink_laglab_applied_message,
+    MAVLINK_MSG_ID_LAGLAB_PLAN: MAVLink_laglab_plan_message,
     MAVLINK_MSG_ID_LAGLAB_PROBE: MAVLink_laglab_probe_message,
     MAVLINK_MSG_ID_SYS_STATUS: MAVLink_sys_status_message,
     MAVLINK_MSG_ID_SYSTEM_TIME: MAVLink_system_time_message,
@@ -17777,7 +17830,7 @@ class MAVLink(object):
         """
         self.send(self.laglab_measurement_encode(x, y, theta, v, omega, tick, command_tick), force_mavlink1=force_mavlink1)
 
-    def laglab_command_encode(self, v: float, omega: float, tick: int, target_system: int, target_component: int, estimates: int) -> MAVLink_laglab_command_message:
+    def laglab_command_encode(self, v: float, omega: float, tick: int, target_system: int, target_component: int, estimates: int, plan: int = 0) -> MAVLink_laglab_command_message:
         """
         Station to robot: the command for one tick, the answer to LAGLAB_TICK.
         A repeated tick is answered with the same command.
@@ -17787,12 +17840,13 @@ class MAVLink(object):
         tick                      : The tick that this command answers. (type:uint32_t)
         target_system             : System ID of the robot. (type:uint8_t)
         target_component          : Component ID of the robot. (type:uint8_t)
-        estimates                 : How many LAGLAB_ESTIMATE and LAGLAB_RECALL frames precede this message: 0 or 1 of each. (type:uint8_t)
+        estimates                 : How many LAGLAB_ESTIMATE, LAGLAB_RECALL and LAGLAB_PLAN frames precede this message: 0 or 1 of each of the first two. (type:uint8_t)
+        plan                      : So many ticks beyond its own this command plans for, in LAGLAB_PLAN frames: it is followed with all of them or not at all. 0: there is no plan. (type:uint16_t)
 
         """
-        return MAVLink_laglab_command_message(v, omega, tick, target_system, target_component, estimates)
+        return MAVLink_laglab_command_message(v, omega, tick, target_system, target_component, estimates, plan)
 
-    def laglab_command_send(self, v: float, omega: float, tick: int, target_system: int, target_component: int, estimates: int, force_mavlink1: bool = False) -> None:
+    def laglab_command_send(self, v: float, omega: float, tick: int, target_system: int, target_component: int, estimates: int, plan: int = 0, force_mavlink1: bool = False) -> None:
         """
         Station to robot: the command for one tick, the answer to LAGLAB_TICK.
         A repeated tick is answered with the same command.
@@ -17802,10 +17856,11 @@ class MAVLink(object):
         tick                      : The tick that this command answers. (type:uint32_t)
         target_system             : System ID of the robot. (type:uint8_t)
         target_component          : Component ID of the robot. (type:uint8_t)
-        estimates                 : How many LAGLAB_ESTIMATE and LAGLAB_RECALL frames precede this message: 0 or 1 of each. (type:uint8_t)
+        estimates                 : How many LAGLAB_ESTIMATE, LAGLAB_RECALL and LAGLAB_PLAN frames precede this message: 0 or 1 of each of the first two. (type:uint8_t)
+        plan                      : So many ticks beyond its own this command plans for, in LAGLAB_PLAN frames: it is followed with all of them or not at all. 0: there is no plan. (type:uint16_t)
 
         """
-        self.send(self.laglab_command_encode(v, omega, tick, target_system, target_component, estimates), force_mavlink1=force_mavlink1)
+        self.send(self.laglab_command_encode(v, omega, tick, target_system, target_component, estimates, plan), force_mavlink1=force_mavlink1)
 
     def laglab_estimate_encode(self, x: float, y: float, theta: float, p_xx: float, p_xy: float, p_xt: float, p_yy: float, p_yt: float, p_tt: float, tick: int) -> MAVLink_laglab_estimate_message:
         """
@@ -17867,7 +17922,7 @@ class MAVLink(object):
         """
         self.send(self.laglab_end_encode(tick, reason), force_mavlink1=force_mavlink1)
 
-    def laglab_settings_encode(self, sample_time: float, wheel_radius: float, track: float, v_max: float, omega_max: float, command_delay: int, measurement_delay: int, dialect: int) -> MAVLink_laglab_settings_message:
+    def laglab_settings_encode(self, sample_time: float, wheel_radius: float, track: float, v_max: float, omega_max: float, command_delay: int, measurement_delay: int, dialect: int, command_playout: int = 0, measurement_playout: int = 0, plan: int = 0) -> MAVLink_laglab_settings_message:
         """
         Either side: what the sender was told. The station sends it with its
         heartbeats; the robot answers it with its own. With different
@@ -17882,11 +17937,14 @@ class MAVLink(object):
         command_delay             : Ticks by which commands are late. (type:uint16_t)
         measurement_delay         : Ticks by which measurements are late. (type:uint16_t)
         dialect                   : Version of this dialect, as in its version element. (type:uint8_t)
+        command_playout           : Ticks after its stamp at which a command is followed, and not sooner; 0: as soon as it comes. (type:uint16_t)
+        measurement_playout        : Ticks after its sampling at which a measurement is used, and not sooner; 0: as soon as it comes. (type:uint16_t)
+        plan                      : Ticks that each command plans for beyond its own; 0: commands come without plans. (type:uint16_t)
 
         """
-        return MAVLink_laglab_settings_message(sample_time, wheel_radius, track, v_max, omega_max, command_delay, measurement_delay, dialect)
+        return MAVLink_laglab_settings_message(sample_time, wheel_radius, track, v_max, omega_max, command_delay, measurement_delay, dialect, command_playout, measurement_playout, plan)
 
-    def laglab_settings_send(self, sample_time: float, wheel_radius: float, track: float, v_max: float, omega_max: float, command_delay: int, measurement_delay: int, dialect: int, force_mavlink1: bool = False) -> None:
+    def laglab_settings_send(self, sample_time: float, wheel_radius: float, track: float, v_max: float, omega_max: float, command_delay: int, measurement_delay: int, dialect: int, command_playout: int = 0, measurement_playout: int = 0, plan: int = 0, force_mavlink1: bool = False) -> None:
         """
         Either side: what the sender was told. The station sends it with its
         heartbeats; the robot answers it with its own. With different
@@ -17901,9 +17959,12 @@ class MAVLink(object):
         command_delay             : Ticks by which commands are late. (type:uint16_t)
         measurement_delay         : Ticks by which measurements are late. (type:uint16_t)
         dialect                   : Version of this dialect, as in its version element. (type:uint8_t)
+        command_playout           : Ticks after its stamp at which a command is followed, and not sooner; 0: as soon as it comes. (type:uint16_t)
+        measurement_playout        : Ticks after its sampling at which a measurement is used, and not sooner; 0: as soon as it comes. (type:uint16_t)
+        plan                      : Ticks that each command plans for beyond its own; 0: commands come without plans. (type:uint16_t)
 
         """
-        self.send(self.laglab_settings_encode(sample_time, wheel_radius, track, v_max, omega_max, command_delay, measurement_delay, dialect), force_mavlink1=force_mavlink1)
+        self.send(self.laglab_settings_encode(sample_time, wheel_radius, track, v_max, omega_max, command_delay, measurement_delay, dialect, command_playout, measurement_playout, plan), force_mavlink1=force_mavlink1)
 
     def laglab_recall_encode(self, first: int, count: int, target_system: int, target_component: int) -> MAVLink_laglab_recall_message:
         """
@@ -17964,6 +18025,44 @@ class MAVLink(object):
 
         """
         self.send(self.laglab_applied_encode(v, omega, first, count), force_mavlink1=force_mavlink1)
+
+    def laglab_plan_encode(self, v: Sequence[float], omega: Sequence[float], tick: int, in_force: int, first: int, target_system: int, target_component: int) -> MAVLink_laglab_plan_message:
+        """
+        Station to robot: the speeds that are to follow a command if none
+        newer comes. Sent before the LAGLAB_COMMAND with the same
+        tick, in as many frames as its plan needs, and counted there.
+        A robot that does not plan passes it over and follows the
+        command alone.
+
+        v                         : Forward speeds. [m/s] (type:double)
+        omega                     : Turn rates, counter-clockwise positive. [rad/s] (type:double)
+        tick                      : The tick of the command that this belongs to. (type:uint32_t)
+        in_force                  : The tick from which on that command is meant to be in force; element i of the whole plan is for [t_j, t_{j+1}), j = in_force + i, and element 0 is the command itself. (type:uint32_t)
+        first                     : Which element of the whole plan the first one here is: 1 in the first frame. Elements beyond the plan of the command do not count. (type:uint16_t)
+        target_system             : System ID of the robot. (type:uint8_t)
+        target_component          : Component ID of the robot. (type:uint8_t)
+
+        """
+        return MAVLink_laglab_plan_message(v, omega, tick, in_force, first, target_system, target_component)
+
+    def laglab_plan_send(self, v: Sequence[float], omega: Sequence[float], tick: int, in_force: int, first: int, target_system: int, target_component: int, force_mavlink1: bool = False) -> None:
+        """
+        Station to robot: the speeds that are to follow a command if none
+        newer comes. Sent before the LAGLAB_COMMAND with the same
+        tick, in as many frames as its plan needs, and counted there.
+        A robot that does not plan passes it over and follows the
+        command alone.
+
+        v                         : Forward speeds. [m/s] (type:double)
+        omega                     : Turn rates, counter-clockwise positive. [rad/s] (type:double)
+        tick                      : The tick of the command that this belongs to. (type:uint32_t)
+        in_force                  : The tick from which on that command is meant to be in force; element i of the whole plan is for [t_j, t_{j+1}), j = in_force + i, and element 0 is the command itself. (type:uint32_t)
+        first                     : Which element of the whole plan the first one here is: 1 in the first frame. Elements beyond the plan of the command do not count. (type:uint16_t)
+        target_system             : System ID of the robot. (type:uint8_t)
+        target_component          : Component ID of the robot. (type:uint8_t)
+
+        """
+        self.send(self.laglab_plan_encode(v, omega, tick, in_force, first, target_system, target_component), force_mavlink1=force_mavlink1)
 
     def laglab_probe_encode(self, time_ns: int, came_ns: Sequence[int], session: int, sequence: int, interval_us: int, came: Sequence[int], filler: Sequence[int]) -> MAVLink_laglab_probe_message:
         """

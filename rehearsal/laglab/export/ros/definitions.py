@@ -34,7 +34,7 @@ DEFINITIONS = {
         "uint32 frame            # its number in that tick\n"
         "uint32 copy             # which copy of it\n"
         "uint32 size             # bytes\n"
-        "string fate             # delivered, lost, burst, outage, queue-full, corrupted\n"
+        "string fate             # delivered, lost, burst, outage, queue-full, corrupted, late\n"
         "float64 extra           # how much later than the fixed delay, s"
     ),
     "laglab_msgs/Arrival": (

@@ -30,6 +30,7 @@ CAUSES = {
     "outage": ("_", GREY),
     "queue-full": ("s", BLUE),
     "corrupted": ("D", PURPLE),
+    "late": ("<", ORANGE),
     "stale": ("v", ORANGE),
     "out of limits": ("^", GREEN),
     "not finite": ("P", SKY),

@@ -39,6 +39,7 @@ CAUSES = {
     "outage": ("circle", GREY),
     "corrupted": ("triangle", GREEN),
     "queue-full": ("inverted_triangle", BLUE),
+    "late": ("diamond", "#E69F00"),
 }
 """Of a lost frame: its marker and colour."""
 TOOLS = "xpan,box_zoom,xwheel_zoom,reset,save"

@@ -1,14 +1,14 @@
 """`[link]`: the way between robot and station."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Self
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, model_validator
 
 from laglab.scenario.tables.table import Table
 from laglab_gateway import IDEAL, Event, Impairments, TimelineError, read_link_log
-from laglab_gateway.values import Ticks, described
-from laglab_protocol import UNKNOWN_DELAY
+from laglab_gateway.values import Ticks, Whole, described
+from laglab_protocol import LONGEST_PLAN, UNKNOWN_DELAY
 
 Delay = Annotated[Ticks, Field(lt=UNKNOWN_DELAY)]
 """As the two sides can tell each other."""
@@ -20,6 +20,23 @@ def _readable(log: Path) -> Path:
     except TimelineError as error:
         raise ValueError(str(error)) from error
     return log.resolve()
+
+
+class PlayoutTable(Table):
+    """What comes early is held until it is as late as this; what comes later is dropped."""
+
+    command: Annotated[
+        Delay,
+        described(
+            "ticks", "So long after its stamp the robot follows a command; 0: when it comes."
+        ),
+    ] = 0
+    measurement: Annotated[
+        Delay,
+        described(
+            "ticks", "So long after its sampling the station uses a measurement; 0: when it comes."
+        ),
+    ] = 0
 
 
 class LinkTable(Table):
@@ -35,6 +52,18 @@ class LinkTable(Table):
     measurement: Annotated[
         Impairments, described("-", "What else the link does to measurements.")
     ] = IDEAL
+    playout: Annotated[
+        PlayoutTable, described("-", "Whether both ends hide the link's jitter, and how far.")
+    ] = PlayoutTable()
+    plan: Annotated[
+        Whole,
+        Field(ge=0, le=LONGEST_PLAN),
+        described(
+            "ticks",
+            "How far each command plans ahead, H: the robot goes on by the newest plan that it has "
+            "while nothing newer comes; 0: it has no plans, and holds the last command.",
+        ),
+    ] = 0
     event: Annotated[
         tuple[Event, ...],
         described("-", "Times at which the link is another; where they overlap, the last wins."),
@@ -48,3 +77,24 @@ class LinkTable(Table):
             "again.",
         ),
     ] = None
+
+    @model_validator(mode="after")
+    def _in_time(self) -> Self:
+        for direction in ("command", "measurement"):
+            bound, delay = getattr(self.playout, direction), getattr(self, f"{direction}_delay")
+            if 0 < bound < delay:
+                raise ValueError(
+                    f"playout.{direction}: must be {delay} or more, the delay of the link, below "
+                    f"which all would be late, or 0, not {bound}"
+                )
+        return self
+
+    @property
+    def n(self) -> int:
+        """Ticks from a command's stamp until it is in force: the link's, or play-out's."""
+        return self.playout.command or self.command_delay
+
+    @property
+    def m(self) -> int:
+        """Ticks from the sampling of a measurement until it is used: the link's, or play-out's."""
+        return self.playout.measurement or self.measurement_delay

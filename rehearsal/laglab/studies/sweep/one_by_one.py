@@ -53,7 +53,7 @@ def judged_alone(scenario: Scenario) -> Judgements:
     """What became of one run. Raises RunError."""
     claims: list[Array] = []
     record = _record(run(scenario, controller=partial(Claiming, claims=claims)), claims)
-    m = scenario.link.measurement_delay
+    m = scenario.link.m
     return judgements(record, target(scenario), m)
 
 

@@ -1,0 +1,47 @@
+"""The items on plans: whether a robot goes on by one; whether a station's are whole."""
+
+from msgspec.structs import replace
+
+from laglab_conformance.items import Item
+from laglab_conformance.robot import CREEP, RobotSession, creep, creeps
+from laglab_conformance.session import DoesNotApplyError
+from laglab_protocol.plans import Planned
+
+LENGTH = 100
+"""Ticks of our plans, in several frames."""
+
+
+def _reads_off(session: RobotSession) -> str | None:
+    """A command to stand still, with a plan to creep after it."""
+    session.exchange()
+    stamp, creeping = session.tick, ((CREEP, 0.0),) * LENGTH
+    plan = Planned(session.command(stamp, plan=LENGTH), stamp, creeping)
+    frames = plan.frames()
+    session.send(*frames, replace(plan.command, estimates=len(frames)))
+    told = session.watch(creeps, session.waits.react)
+    session.plans = told is not None
+    session.exchange()
+    if told is None and creep(session) is None:
+        raise DoesNotApplyError(f"{CREEP} m/s it does not drive")
+    session.exchange()
+    return None if told else f"of command {stamp} nothing came into force but its first entry"
+
+
+def _whole_or_not(session: RobotSession) -> str | None:
+    """A command to creep, of whose plan the last frame never comes."""
+    if not session.plans:
+        raise DoesNotApplyError("it has no plans")
+    session.exchange()
+    stamp, creeping = session.tick, ((CREEP, 0.0),) * LENGTH
+    command = session.command(stamp, v=CREEP, plan=LENGTH)
+    *frames, _ = Planned(command, stamp, creeping).frames()
+    session.send(*frames, replace(command, estimates=len(frames)))
+    told = session.watch(creeps, session.refusal)
+    session.exchange()
+    return f"command {stamp} is followed, of whose plan a frame is missing" if told else None
+
+
+PLANS = [
+    Item("ticks", "it goes on by the plan of a command", _reads_off, mandatory=False),
+    Item("ticks", "what lacks a part of its plan is not followed", _whole_or_not),
+]
