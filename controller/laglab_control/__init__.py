@@ -12,6 +12,7 @@ from laglab_control.controller import (
     Controller,
     StationConfig,
     is_far,
+    without_blind_guard,
 )
 from laglab_control.errata import Erratum, PrintedController
 from laglab_control.errors import ConfigError, ControlError, StampError
@@ -57,6 +58,8 @@ from laglab_control.model import Model, NonlinearModel
 from laglab_control.plugins import (
     Plugin,
     PluginError,
+    PluginFailedError,
+    at_tick,
     find_plugin,
     first_line,
     installed_plugins,
@@ -97,6 +100,7 @@ __all__ = [
     "Path",
     "Plugin",
     "PluginError",
+    "PluginFailedError",
     "PolarLaw",
     "Popf",
     "PopfExact",
@@ -115,6 +119,7 @@ __all__ = [
     "TrackingLaw",
     "Waypoints",
     "WheelScales",
+    "at_tick",
     "chi_square_bound",
     "constant_delay",
     "delay_margin",
@@ -125,5 +130,6 @@ __all__ = [
     "is_module_class",
     "normalised_squared",
     "replay",
+    "without_blind_guard",
     "wrap",
 ]

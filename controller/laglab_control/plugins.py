@@ -3,11 +3,14 @@
 import inspect
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
+from importlib.util import find_spec
+from pathlib import Path
 from typing import Any, Literal, NamedTuple, Protocol
 
-from laglab_control.errors import ControlError
+from laglab_control.errors import ControlError, StampError
 
 HERE = ""
 """The current directory, in Python's search path: last, so that nothing there hides a library."""
@@ -17,6 +20,10 @@ Group = Literal["laglab.estimators", "laglab.laws", "laglab.plants"]
 
 class PluginError(ControlError):
     """What was named cannot be had, or does not do what it must; the text names it."""
+
+
+class PluginFailedError(PluginError):
+    """It failed while it ran, or answered what it must not."""
 
 
 class Maker(Protocol):
@@ -49,8 +56,7 @@ def find_plugin(group: Group, name: str, shipped: tuple[str, ...] = ()) -> Maker
     is none, or it cannot be loaded.
     """
     if is_module_class(name):
-        if HERE not in sys.path:
-            sys.path.append(HERE)  # a command's own path does not have it, and our children's may
+        _look_here()
         return _loaded(EntryPoint(name, name, group), name)
     entries = {entry.name: entry for entry in entry_points(group=group)}
     if name not in entries:
@@ -68,6 +74,22 @@ def installed_plugins(group: Group) -> Iterator[Plugin]:
         except PluginError as error:
             description = str(error)
         yield Plugin(entry.name, origin, description)
+
+
+def source_of(group: Group, name: str) -> Path | None:
+    """The file of the module that a class comes from; None where there is none to be seen."""
+    values = (
+        [name]
+        if is_module_class(name)
+        else [entry.value for entry in entry_points(group=group) if entry.name == name]
+    )
+    for value in values:
+        _look_here()
+        with suppress(ImportError, ValueError):
+            found = find_spec(value.partition(":")[0])
+            if found and found.origin and Path(found.origin).is_file():
+                return Path(found.origin)
+    return None
 
 
 def made(name: str, maker: Maker, *told: object, **options: object) -> object:
@@ -93,11 +115,22 @@ def refuse_misfit(name: str, brought: object, method: str, *parameters: str) -> 
 
 
 def called(name: str, method: Callable[..., object], *told: object) -> Any:
-    """What the method of a stranger's answers. Raises PluginError when it fails."""
+    """What the method of a stranger's answers. Raises PluginFailedError when it fails."""
     try:
         return method(*told)
+    except StampError:
+        raise  # as an estimator must
     except (Exception, SystemExit) as error:
-        raise PluginError(f"{name}.{method.__name__}: {one_line(error)}") from error
+        raise PluginFailedError(f"{name}.{method.__name__}: {one_line(error)}") from error
+
+
+@contextmanager
+def at_tick(tick: int) -> Iterator[None]:
+    """Whatever somebody brought fails within is said with the tick."""
+    try:
+        yield
+    except PluginFailedError as error:
+        raise PluginFailedError(f"tick {tick}: {error}") from error
 
 
 def one_line(error: BaseException) -> str:
@@ -117,11 +150,20 @@ def _loaded(entry: EntryPoint, name: str) -> Maker:
         found: object = import_module(module)
         for part in attribute.split("."):
             found = getattr(found, part)
-    except Exception as error:  # whatever a stranger's module does when it is imported
+    except (
+        Exception,
+        SystemExit,
+    ) as error:  # as strangers do
         raise PluginError(f"{name}: {one_line(error)}") from error
     if not callable(found):
         raise PluginError(f"{name}: {entry.value} is no class, but {found!r}")
     return found
+
+
+def _look_here() -> None:
+    """A command's own search path does not have the current directory."""
+    if HERE not in sys.path:
+        sys.path.append(HERE)
 
 
 def _singular(group: Group) -> str:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from laglab_control import Control, Controller, Demand, StationConfig
+from laglab_control import Control, Controller, Demand, StationConfig, at_tick
 from laglab_control.model import Matrix, Vector
 from laglab_station.hearing import echoes, measured, recalled
 from laglab_station.session import SessionTick
@@ -27,6 +27,7 @@ class ShadowRow(NamedTuple):
 def shadow(config: StationConfig, session: Iterable[SessionTick]) -> Iterator[ShadowRow]:
     """Run `config.estimator` beside the commands that were sent; the first tick heard is tick 0.
 
+    Raises PluginFailedError, naming the tick, when an estimator that somebody brought fails.
     The law of `config` is not asked. Over ticks that are missing, the last command held. It ends
     early when the estimate has become infinite.
     """
@@ -35,10 +36,11 @@ def shadow(config: StationConfig, session: Iterable[SessionTick]) -> Iterator[Sh
     first = last = None
     for heard in session:
         first, last = (heard.tick, heard.tick) if first is None or last is None else (first, last)
-        for _ in range(heard.tick - last):
-            control = controller.advance(control)
+        with at_tick(heard.tick):
+            for _ in range(heard.tick - last):
+                control = controller.advance(control)
+            control = _followed(controller, control, heard, first)
         last = heard.tick
-        control = _followed(controller, control, heard, first)
         x, P = control.pose, control.P
         if x is not None and not np.all(np.isfinite(x)):
             return

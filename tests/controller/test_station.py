@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from laglab_control import ConfigError, PolarLaw, RobotModel, StationConfig
+from laglab_control import ControlError, PolarLaw, RobotModel, StationConfig
 from laglab_protocol import (
     NO_COMMAND,
     Command,
@@ -220,5 +220,5 @@ def test_heartbeat_says_ground_station():
     ],
 )
 def test_a_bad_config_is_named(config, said):
-    with pytest.raises(ConfigError, match=said):
+    with pytest.raises(ControlError, match=said):
         StationConfig(**config)

@@ -86,9 +86,9 @@ def test_the_page_s_robot_runs_the_same_by_every_way(ice: Path, laglab: Laglab) 
 @pytest.mark.parametrize(
     ("name", "said"),
     [
-        ("Raises", "faulty:Raises: tick 6: step: ValueError: no ice left here"),
-        ("Nowhere", "faulty:Nowhere: tick 7: read: x must be a finite number, not nan"),
-        ("Vague", "faulty:Vague: tick 6: read: must give a Reading (x, y, theta, x_meas, "),
+        ("Raises", "tick 6: faulty:Raises.step: ValueError: no ice left here"),
+        ("Nowhere", "tick 7: faulty:Nowhere.read: x must be finite, not nan"),
+        ("Vague", "tick 6: faulty:Vague.read: must answer x, y, theta, x_meas, "),
     ],
 )
 def test_what_it_does_wrong_ends_the_run(ice: Path, laglab: Laglab, name: str, said: str) -> None:
@@ -103,8 +103,8 @@ def test_what_it_does_wrong_ends_the_run(ice: Path, laglab: Laglab, name: str, s
 @pytest.mark.parametrize(
     ("kind", "said"),
     [
-        ("faulty:Unmade", "faulty:Unmade: OSError: no rink"),
-        ("faulty:Half", "faulty:Half: a plant must have step, place, which this has not"),
+        ("faulty:Unmade", "faulty:Unmade cannot be made: OSError: no rink"),
+        ("faulty:Half", "faulty:Half has no method step(v, omega)"),
         ("faulty:Gone", "faulty:Gone: AttributeError: module 'faulty' has no attribute 'Gone'"),
         ("nowhere:Robot", "nowhere:Robot: ModuleNotFoundError: No module named 'nowhere'"),
         ("ice:math", "ice:math: ice:math is no class"),

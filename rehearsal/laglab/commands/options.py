@@ -23,7 +23,8 @@ EstimatorsOption = Annotated[
     typer.Option(
         "--estimator",
         metavar="NAME",
-        help=f"The filter in the loop; further ones shadow it: {', '.join(ESTIMATORS)}.",
+        help=f"The filter in the loop; further ones shadow it: {', '.join(ESTIMATORS)}, a plug-in "
+        "or module:Class.",
         autocompletion=lambda: list(ESTIMATORS),
     ),
 ]

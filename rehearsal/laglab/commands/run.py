@@ -17,6 +17,7 @@ from laglab.results.place import place
 from laglab.runs.plant import check_plant
 from laglab.runs.rehearse import Transport
 from laglab.runs.robot_side import Setup
+from laglab.runs.station_side import check_parts
 from laglab.runs.whole import run_into
 from laglab.scenario import Scenario
 
@@ -75,6 +76,7 @@ def run(
         raise ScenarioError("--plant: a real robot does not wait: take --transport udp or serial")
     setup = Setup(plant, key, plant_key=plant_key)
     setup.check()
+    check_parts(scenario)
     if plant is None:
         check_plant(scenario)
     way = Way("both", transport, plant or scenario.plant.called)

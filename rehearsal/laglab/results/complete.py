@@ -1,6 +1,7 @@
 """From a record and an ending to a run: what every way of making one has in common."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -20,6 +21,7 @@ from laglab.results.shadows import (
     shadow_error,
     shadow_file,
     shadow_rows,
+    until_it_fails,
 )
 from laglab.results.summary import Errors, Final, Following, Side, Summary, write_summary
 from laglab.results.target import followed, target
@@ -68,7 +70,11 @@ def complete(
         numbers = digest(trace_pieces(directory / TRACE_FILE), scenario.link.measurement_delay)
     except TraceError as error:
         raise nothing_recorded(ending, str(error)) from None
-    compared = {name: _shadowed(scenario, name, directory) for name in scenario.estimator.compare}
+    failed: list[str] = []
+    compared = {
+        name: _shadowed(scenario, name, directory, failed) for name in scenario.estimator.compare
+    }
+    ending = replace(ending, warnings=(*ending.warnings, *failed))
     following = followed(trace_pieces(directory / TRACE_FILE), target(scenario), numbers.rows)
     summary = summarise(scenario, way, ending, numbers, compared, following)
     write_summary(summary, directory)
@@ -87,12 +93,14 @@ def keep(scenario: Scenario, way: Way, ending: Ending, recorder: MemoryRecorder)
     session = list(heard(_frames(recorder.tlog))) if names else []
     shadows: dict[str, Shadow] = {}
     compared: dict[str, Errors | None] = {}
+    failed: list[str] = []
     for name in names:
-        rows = list(shadow_rows(scenario, name, session))
+        rows = list(until_it_fails(shadow_rows(scenario, name, session), failed.append))
         shadows[name] = collected(rows)
         compared[name] = shadow_error(rows, [trace], scenario.link.measurement_delay)
     numbers = digest([trace], scenario.link.measurement_delay)
     following = followed([trace], target(scenario), numbers.rows)
+    ending = replace(ending, warnings=(*ending.warnings, *failed))
     summary = summarise(scenario, way, ending, numbers, compared, following)
     return Run(scenario, summary, None, Kept(trace, _tables(recorder), shadows))
 
@@ -123,8 +131,10 @@ def _frames(records: Iterable[tuple[int, bytes]]) -> Iterable[Frame]:
         yield frame
 
 
-def _shadowed(scenario: Scenario, name: str, directory: Path) -> Errors | None:
-    rows = shadow_rows(scenario, name, read_session(directory / TLOG_FILE))
+def _shadowed(scenario: Scenario, name: str, directory: Path, failed: list[str]) -> Errors | None:
+    rows = until_it_fails(
+        shadow_rows(scenario, name, read_session(directory / TLOG_FILE)), failed.append
+    )
     written = kept_rows(rows, shadow_file(directory, name))
     pieces = trace_pieces(directory / TRACE_FILE)
     return shadow_error(written, pieces, scenario.link.measurement_delay)
@@ -212,7 +222,7 @@ def _verdict(
         case EndReason.INTERRUPTED:
             return f"interrupted at tick {tick}"
         case EndReason.FAILED:
-            return f"stopped at tick {tick}: the other side failed"
+            return f"stopped at tick {tick}: {ending.problem or 'the other side failed'}"
         case EndReason.DISPLACED:
             return f"stopped at tick {tick}: another station has taken over"
     stopped = "after an emergency stop: " if ending.emergency_stop else ""

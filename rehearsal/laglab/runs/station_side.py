@@ -4,6 +4,7 @@ import math
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -39,10 +40,22 @@ def control_law(scenario: Scenario) -> Law:
     return brought_law(told.kind, scenario.goal, told.options | ({"path": path} if path else {}))
 
 
+def check_parts(scenario: Scenario) -> None:
+    """Whatever somebody brought can be made here, the filters beside the loop too.
+
+    Raises PluginError or ConfigError.
+    """
+    config = station_config(scenario)
+    Controller(config).start()
+    for name in scenario.estimator.compare:
+        Controller(replace(config, estimator=name, estimator_options={}, guard=False)).start()
+
+
 def station_config(scenario: Scenario) -> StationConfig:
     """The remote station's side."""
     return StationConfig(
         estimator=scenario.estimator.kind,
+        estimator_options=scenario.estimator.options,
         model=robot_model(scenario),
         law=control_law(scenario),
         limits=SpeedLimits(**scenario.law.of(SpeedLimits)),
