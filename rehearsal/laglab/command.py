@@ -19,6 +19,7 @@ from laglab.commands import (
     figure,
     fmu,
     maps,
+    new,
     protocol,
     replay,
     report,
@@ -69,6 +70,7 @@ app.command("scenarios")(scenarios.scenarios)
 app.command("estimators")(estimators.estimators)
 app.command("laws")(estimators.laws)
 app.command("check")(check.check)
+app.command("new")(new.new)
 app.command("scenario")(scenario.scenario)
 app.command("figure")(figure.figure)
 app.command("report")(report.report)
