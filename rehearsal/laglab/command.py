@@ -19,6 +19,7 @@ from laglab.commands import (
     figure,
     fmu,
     maps,
+    new,
     plant,
     protocol,
     replay,
@@ -71,6 +72,7 @@ app.command("estimators")(estimators.estimators)
 app.command("laws")(estimators.laws)
 app.command("plants")(estimators.plants)
 app.command("check")(check.check)
+app.command("new")(new.new)
 app.command("scenario")(scenario.scenario)
 app.command("figure")(figure.figure)
 app.command("report")(report.report)
