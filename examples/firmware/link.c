@@ -33,6 +33,12 @@ static LinkEvent recall_of(const mavlink_message_t *message) {
     return (LinkEvent){.kind = LINK_RECALL, .first = asked.first, .count = asked.count};
 }
 
+static LinkEvent probe_of(const mavlink_message_t *message) {
+    return (LinkEvent){.kind = LINK_PROBE,
+                       .session = mavlink_msg_laglab_probe_get_session(message),
+                       .sequence = mavlink_msg_laglab_probe_get_sequence(message)};
+}
+
 static mavlink_signing_t signing;
 static mavlink_signing_streams_t streams;
 static uint64_t clock_now;
@@ -98,6 +104,8 @@ static LinkEvent event_of(const mavlink_message_t *message) {
         return command_of(message);
     case MAVLINK_MSG_ID_LAGLAB_RECALL:
         return recall_of(message);
+    case MAVLINK_MSG_ID_LAGLAB_PROBE:
+        return probe_of(message);
     case MAVLINK_MSG_ID_COMMAND_LONG:
         return request_of(mavlink_msg_command_long_get_target_system(message),
                           mavlink_msg_command_long_get_target_component(message),
@@ -210,6 +218,26 @@ size_t link_write_applied(uint8_t *buffer, const Memory *memory, uint32_t first,
     }
     mavlink_message_t message;
     mavlink_msg_laglab_applied_pack(ROBOT_SYSTEM, ROBOT_COMPONENT, &message, v, omega, first, told);
+    return mavlink_msg_to_send_buffer(buffer, &message);
+}
+
+size_t link_write_probe(uint8_t *buffer, Probing *probing, uint64_t now) {
+    enum { UNFILLED = 68, SIGNATURE = 13, TICK_SIZE = 58 + 17 }; /* bytes of frames */
+    const uint32_t interval = (uint32_t)(SAMPLE_TIME * 1e6);
+    const uint32_t sequence = probing->said;
+    uint8_t filler[MAVLINK_MSG_LAGLAB_PROBE_FIELD_FILLER_LEN] = {0};
+    memset(filler, 1, TICK_SIZE - UNFILLED + (have_key() ? SIGNATURE : 0));
+    Arrival told[PROBE_PLACES];
+    probe_tell(probing, told);
+    uint64_t came_ns[PROBE_PLACES];
+    uint32_t came[PROBE_PLACES];
+    for (int i = 0; i < PROBE_PLACES; i++) {
+        came_ns[i] = told[i].time;
+        came[i] = told[i].sequence;
+    }
+    mavlink_message_t message;
+    mavlink_msg_laglab_probe_pack(ROBOT_SYSTEM, ROBOT_COMPONENT, &message, now, came_ns, probing->session, sequence,
+                                  interval, came, filler);
     return mavlink_msg_to_send_buffer(buffer, &message);
 }
 

@@ -9,16 +9,18 @@
 #include "drive.h"
 #include "key.h"
 #include "memory.h"
+#include "probe.h"
 
 #define LINK_LARGEST 280 /* bytes that link_write_* write at most */
 
 /* What a station can ask of the robot. */
 typedef struct {
-    enum { LINK_NOTHING, LINK_REFUSED, LINK_BEGIN, LINK_SETTINGS, LINK_COMMAND, LINK_REQUEST, LINK_RECALL, LINK_END } kind;
+    enum { LINK_NOTHING, LINK_REFUSED, LINK_BEGIN, LINK_SETTINGS, LINK_COMMAND, LINK_REQUEST, LINK_RECALL, LINK_PROBE, LINK_END } kind;
     Command command;
     uint16_t request; /* a MAV_CMD */
     uint32_t first;   /* the first tick to recall */
     uint16_t count;   /* ticks to recall */
+    uint32_t session, sequence; /* of a probe */
     uint8_t reason;   /* of an end */
     const char *why;  /* a frame was refused for its signature */
 } LinkEvent;
@@ -51,6 +53,9 @@ size_t link_write_settings(uint8_t *buffer);
 /* The answer to a question of what was in force: LINK_RECALLED ticks from `first` on at most. Its size. */
 #define LINK_RECALLED 12
 size_t link_write_applied(uint8_t *buffer, const Memory *memory, uint32_t first, uint16_t count);
+
+/* A probe, as long as a tick's frames, sent at this time of the wall's clock [ns]. Its size. */
+size_t link_write_probe(uint8_t *buffer, Probing *probing, uint64_t now);
 
 /* The answer to an end. Its size. */
 size_t link_write_end(uint8_t *buffer, uint32_t tick, uint8_t reason);

@@ -20,6 +20,7 @@
 #include "key.h"
 #include "link.h"
 #include "memory.h"
+#include "probe.h"
 
 static const double PAUSE = 0.05; /* s; bytes of one frame come sooner after each other */
 
@@ -34,6 +35,7 @@ typedef struct {
     Body body;
     Drive drive;
     Memory memory;
+    Probing probing;
     uint32_t asked; /* the next tick to recall */
     uint16_t owed;  /* so many from there on were asked for and not told yet */
 } Robot;
@@ -48,6 +50,13 @@ static int open_port(const char *device) {
     cfmakeraw(&settings);
     cfsetspeed(&settings, B115200);
     return tcsetattr(port, TCSAFLUSH, &settings) == 0 ? port : -1;
+}
+
+/* By the wall's clock [ns]. */
+static uint64_t wall_time(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME, &now);
+    return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
 }
 
 /* A tick that finds no room is dropped, as a UART would. */
@@ -99,6 +108,9 @@ static bool obey(Robot *robot, LinkEvent event) {
         return true;
     case LINK_RECALL:
         owe(robot, event.first, event.count < MEMORY_TICKS ? event.count : MEMORY_TICKS);
+        return true;
+    case LINK_PROBE:
+        probe_hear(&robot->probing, event.session, event.sequence, wall_time());
         return true;
     case LINK_COMMAND:
         if (robot->running) {
@@ -171,6 +183,16 @@ static bool tick(Robot *robot) {
     return send(robot, buffer, size);
 }
 
+/* While somebody measures the link, and no run goes on: a frame every tick. */
+static bool probe(Robot *robot) {
+    uint8_t buffer[LINK_LARGEST];
+    probe_wait(&robot->probing, robot->wakes);
+    if (robot->running || !robot->probing.running) {
+        return true;
+    }
+    return send(robot, buffer, link_write_probe(buffer, &robot->probing, wall_time()));
+}
+
 /* Sleep until an instant that is `seconds` after the last one: being late once makes nothing late after it. */
 static void sleep_on(struct timespec *deadline, double seconds) {
     deadline->tv_nsec += (long)(seconds * 1e9);
@@ -184,7 +206,7 @@ static void run(Robot *robot) {
     struct timespec deadline;
     clock_gettime(CLOCK_MONOTONIC, &deadline);
     link_clock(key_time());
-    while (receive(robot) && (!robot->running || tick(robot))) {
+    while (receive(robot) && (!robot->running || tick(robot)) && probe(robot)) {
         sleep_on(&deadline, robot->wakes);
         link_clock(key_time());
     }

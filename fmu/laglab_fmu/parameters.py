@@ -1,6 +1,6 @@
 """What a robot is told before it starts, and what it says at every tick."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import NamedTuple
 
@@ -68,9 +68,9 @@ class RobotParameters:
         return names.index(self.integration) + 1
 
 
-def values(robots: Sequence[RobotParameters], names: Sequence[str]) -> list[float]:
-    """All robots' values of the first name, then of the next: the order of FMI 3.0 arrays."""
-    rows = [robot.by_name() for robot in robots]
+def values(rows: Sequence[Mapping[str, float]], names: Sequence[str]) -> list[float]:
+    """All robots' values (`by_name`) of the first name, then of the next: the order of FMI 3.0
+    arrays."""
     return [row[name] for name in names for row in rows]
 
 

@@ -110,8 +110,9 @@ class Slave2:
         self.log.append(text.decode().replace("%%", "%"))
 
     def initialize(self, robots: Sequence[RobotParameters]) -> None:
+        rows = [robot.by_name() for robot in robots]
         for setter, names in _SETTERS_2.items():
-            getattr(self.fmu, setter)([REFERENCE[name] for name in names], values(robots, names))
+            getattr(self.fmu, setter)([REFERENCE[name] for name in names], values(rows, names))
         self.fmu.setupExperiment(startTime=0.0)
         self.fmu.enterInitializationMode()
         self.fmu.exitInitializationMode()
@@ -154,8 +155,9 @@ class Slave3:
             self.fmu.enterConfigurationMode()
             self.fmu.setUInt64([REFERENCE["robots"]], [len(robots)])
             self.fmu.exitConfigurationMode()
+        rows = [robot.by_name() for robot in robots]
         for setter, names in _SETTERS_3.items():
-            getattr(self.fmu, setter)([REFERENCE[name] for name in names], values(robots, names))
+            getattr(self.fmu, setter)([REFERENCE[name] for name in names], values(rows, names))
         self.fmu.enterInitializationMode(startTime=0.0)
         self.fmu.exitInitializationMode()
 

@@ -15,7 +15,7 @@ from laglab_gateway.errors import (
 from laglab_gateway.link.channel import Channel
 from laglab_gateway.link.fates import Fates, RandomFates
 from laglab_gateway.link.impairments import IDEAL, Burst, ExtraDelay, Impairments
-from laglab_gateway.link.log import LinkRow, RecordedFates, read_link_log
+from laglab_gateway.link.log import LinkRow, RecordedFates, read_link_log, recorded_ticks
 from laglab_gateway.link.timeline import Direction, Event, first_tick
 from laglab_gateway.loops.lockstep import serve_lockstep
 from laglab_gateway.loops.realtime import serve_realtime
@@ -124,6 +124,7 @@ __all__ = [
     "format_row",
     "read_link_log",
     "read_trace",
+    "recorded_ticks",
     "serve_lockstep",
     "serve_realtime",
     "serve_remote",

@@ -18,6 +18,7 @@ from laglab.commands import (
     export,
     figure,
     fmu,
+    link,
     maps,
     new,
     plant,
@@ -92,6 +93,7 @@ app.command("serial")(serial.serial)
 app.add_typer(bench.app, name="bench")
 app.add_typer(fmu.app, name="fmu")
 app.add_typer(plant.app, name="plant")
+app.add_typer(link.app, name="link")
 app.add_typer(protocol.app, name="protocol")
 app.command("conform")(protocol.conform)
 

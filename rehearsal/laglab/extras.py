@@ -19,6 +19,7 @@ class Need(Enum):
     MATLAB = "export", ("scipy",)
     BAGS = "export", ("mcap_ros2",)
     SEEING = "see", ("bokeh",)
+    CAPTURES = "link", ("dpkt",)
 
     def __init__(self, extra: str, modules: tuple[str, ...]) -> None:
         self.extra = extra
@@ -36,6 +37,7 @@ class Need(Enum):
     MATLAB,
     BAGS,
     SEEING,
+    CAPTURES,
 ) = Need
 
 

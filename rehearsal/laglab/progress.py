@@ -29,6 +29,9 @@ T = TypeVar("T")
 PACE_WINDOW = 300.0
 """[s] A study's cells may take minutes each."""
 
+REFRESHED = 0.1
+"""[s] To show something takes a while, in which whoever works does not."""
+
 ROOMY, NARROW = 72, 44
 """[columns] Narrower terminals are told less."""
 
@@ -81,6 +84,23 @@ def passing(title: str, seconds: float) -> Iterator[Callable[[float], None]]:
     with _bar("s") as bar:
         task = bar.add_task(title, total=round(seconds))
         yield lambda elapsed: bar.update(task, completed=round(elapsed), refresh=True)
+
+
+@contextmanager
+def counting(unit: str, title: str, total: int) -> Iterator[Callable[[int], None]]:
+    """Shows how many are done, about ten times a second at most."""
+    with _bar(unit) as bar:
+        task = bar.add_task(title, total=total)
+        shown = 0.0
+
+        def told(done: int) -> None:
+            nonlocal shown
+            now = bar.get_time()
+            if now - shown >= REFRESHED or done == total:
+                shown = now
+                bar.update(task, completed=done, refresh=True)
+
+        yield told
 
 
 @contextmanager

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,15 +12,18 @@ from hypothesis import strategies as st
 from laglab_gateway import (
     Burst,
     Channel,
+    ConfigError,
     Event,
     ExtraDelay,
     FileRecorder,
     Impairments,
+    LinkRow,
     RandomFates,
     RecordedFates,
     TimelineError,
     read_link_log,
 )
+from laglab_gateway.link.fates import Fate, FateKind
 from laglab_protocol import Command
 
 TS = 0.01
@@ -167,3 +171,63 @@ def test_what_is_no_link_log_is_refused_by_name(tmp_path: Path, text: str) -> No
     path.write_text(text)
     with pytest.raises(TimelineError, match=r"other\.csv"):
         read_link_log(path, "command")
+
+
+def test_a_replay_begins_again_at_its_end_in_both_directions_at_once() -> None:
+    rows = [LinkRow("command", tick, 0, 0, 35, *told) for tick, told in enumerate(TOLD)]
+    fates = RecordedFates(rows, range(5))
+    got = [fates.of(tick, tick * TS, b"x")[0] for tick in range(15)]
+    assert [each.kind for each in got[:3]] == ["delivered", "lost", "delivered"]
+    assert [each.kind for each in got[3:5]] == ["delivered"] * 2, "no record of these ticks"
+    assert got[5:10] == got[:5] == got[10:]
+    assert [each.extra for each in got[:5]] == [0.01, 0.0, 0.03, 0.0, 0.0]
+
+
+TOLD = (("delivered", 0.01), ("lost", 0.0), ("delivered", 0.03))
+
+
+def test_what_is_in_a_recorded_frames_datagram_shares_its_fate() -> None:
+    fates = RecordedFates([LinkRow("command", 7, 0, 0, 35, "lost", 0.0)])
+    for tick in (7, 8, 107):
+        assert [fates.of(tick, 0.0, b"x")[0].kind for _ in range(3)] == ["lost"] * 3
+    assert RecordedFates([]).of(3, 0.0, b"x") == [Fate(FateKind.DELIVERED, 0.0, b"x")]
+
+
+@pytest.mark.parametrize("correlation", [0.0, 0.9])
+def test_a_table_of_delays_is_drawn_as_it_is_and_as_it_wanders(correlation: float) -> None:
+    quantiles = (0.01, 0.02, 0.05, 0.1)
+    table = ExtraDelay("table", 0.005, quantiles=quantiles, correlation=correlation)
+    fates = RandomFates(Impairments(extra_delay=table), [], np.random.default_rng(3))
+    drawn = np.array([fates.of(k, k * TS, b"x")[0].extra for k in range(20_000)])
+    at = np.quantile(drawn, [0.0, 1 / 3, 2 / 3, 1.0])
+    np.testing.assert_allclose(at, np.array(quantiles) + 0.005, rtol=0.08)
+    ranks = np.argsort(np.argsort(drawn))
+    assert np.corrcoef(ranks[1:], ranks[:-1])[0, 1] == pytest.approx(correlation, abs=0.03)
+
+
+@pytest.mark.parametrize("distribution", ["constant", "uniform", "normal", "exponential"])
+def test_delays_that_wander_scatter_as_those_that_do_not(distribution: Any) -> None:
+    spread = [
+        RandomFates(
+            Impairments(extra_delay=ExtraDelay(distribution, 0.04, 0.01, correlation=kept)),
+            [],
+            np.random.default_rng(5),
+        )
+        for kept in (0.0, 0.5)
+    ]
+    drawn = [[each.of(k, 0.0, b"x")[0].extra for k in range(10_000)] for each in spread]
+    shares = [0.05, 0.5, 0.95]
+    np.testing.assert_allclose(*(np.quantile(each, shares) for each in drawn), rtol=0.1)
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"distribution": "table"}, "quantiles: a table has two delays or more"),
+        ({"quantiles": (0.2, 0.1)}, "quantiles: must rise from one to the next"),
+        ({"correlation": 1.0}, "correlation: must be below 1"),
+    ],
+)
+def test_delays_that_cannot_be_are_refused(values: dict[str, Any], said: str) -> None:
+    with pytest.raises(ConfigError, match=said):
+        ExtraDelay(**values)

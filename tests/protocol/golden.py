@@ -10,6 +10,7 @@ from typing import NamedTuple
 from msgspec.structs import astuple
 
 from laglab_protocol import (
+    NO_PROBE,
     Applied,
     Command,
     End,
@@ -17,6 +18,7 @@ from laglab_protocol import (
     Heartbeat,
     Measurement,
     Message,
+    Probe,
     Recall,
     Settings,
     Tick,
@@ -194,6 +196,23 @@ GOLDEN = [
         "d33f000000000000f87f000000000000000000000000000000000000000000000000000000000000"
         "00000000000000000000000000000000000000000000000000000000000000000000000000000000"
         "000000286bee0316ac",
+    ),
+    Golden(
+        "a probe of the link",
+        200,
+        190,
+        26,
+        Probe(
+            1700000000123456789,
+            (1700000000000000000, 1699999999000000000, 0),
+            0xDEADBEEF,
+            1000,
+            10000,
+            (999, 983, NO_PROBE),
+            (1, 1, 1, *(0,) * 177),
+        ),
+        "fd3b00001ac8be8ecb0015cd853dfe9c971700002a36fe9c971700368ffafd9c9717000000000000"
+        "0000efbeaddee803000010270000e7030000d7030000ffffffff0101019b2c",
     ),
     Golden(
         "a rover's heartbeat",

@@ -66,9 +66,9 @@ def c_double(value: float) -> str:
     return value.hex()
 
 
-def c_value(value: float | tuple[float, ...]) -> str:
+def c_value(value: float | tuple[float, ...], kind: str) -> str:
     if isinstance(value, tuple):
-        return f"(const double[]){{{', '.join(map(c_double, value))}}}"
+        return f"(const {kind}[]){{{', '.join(c_value(each, kind) for each in value)}}}"
     return c_double(value) if isinstance(value, float) else f"{value}LL"
 
 
@@ -76,15 +76,16 @@ def lower_name(row: Golden) -> str:
     return layout_of(row.message).name.lower()
 
 
-def declared_order(row: Golden) -> list[float | tuple[float, ...]]:
+def declared_order(row: Golden) -> list[str]:
     """C's pack functions take the fields as the XML declares them."""
     generated = dialect.mavlink_map[layout_of(row.message).id]
-    return [astuple(row.message)[i] for i in generated.orders]
+    values = [astuple(row.message)[i] for i in generated.orders]
+    return list(map(c_value, values, generated.fieldtypes))
 
 
 def make_in_c(row: Golden) -> str:
     # mavlink_version is not given to C: it fills it in.
-    fields = ", ".join(map(c_value, declared_order(row)[: 5 if "heart" in row.name else None]))
+    fields = ", ".join(declared_order(row)[: 5 if "heart" in row.name else None])
     return (
         f"    mavlink_get_channel_status(MAVLINK_COMM_0)->current_tx_seq = {row.sequence};\n"
         f"    mavlink_msg_{lower_name(row)}_pack("

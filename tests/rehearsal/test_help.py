@@ -22,7 +22,10 @@ def said(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> str:
     return capsys.readouterr().out
 
 
-@pytest.mark.parametrize("group", [(), ("bench",), ("fmu",), ("plant",), ("protocol",)])
+GROUPS = ("bench", "fmu", "link", "plant", "protocol")
+
+
+@pytest.mark.parametrize("group", [(), *((each,) for each in GROUPS)])
 def test_a_group_alone_shows_its_help(
     group: tuple[str, ...], capsys: pytest.CaptureFixture[str]
 ) -> None:

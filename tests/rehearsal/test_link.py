@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from laglab.command import main
-from laglab_gateway import read_trace
+from laglab_gateway import read_link_log, read_trace
 from laglab_gateway.link.log import LINK_HEADER
 from laglab_protocol import Statustext, read_tlog
 
@@ -104,6 +104,25 @@ def test_commands_out_of_the_robots_limits_are_refused_and_counted(
     fast = np.abs(trace["v_sent"]) > 5.0
     assert summary["link"]["refused"] == {"out of limits": int(fast[:-10].sum())}
     assert np.abs(trace["v"]).max() <= 5.0
+
+
+def test_a_longer_run_goes_through_a_replay_again_and_says_so(
+    laglab: Laglab, tmp_path: Path
+) -> None:
+    recorded = [
+        f"{way},{tick},0,0,60,{'lost' if tick % 3 else 'delivered'},0.0\n"
+        for tick in range(50)
+        for way in ("command", "measurement")
+    ]
+    (tmp_path / "link.csv").write_text(LINK_HEADER + "".join(recorded))
+    options = ("--timeline", "link.csv", "--duration", "2", "--transport", "inline")
+    result = laglab("run", "lab", *options)
+    assert "link.csv holds 0.5 s of a link: the run goes through it 4.02 times" in result.stderr
+    rows = read_link_log(tmp_path / "runs/lab/link.csv", "command")
+    fates = [row.fate for row in rows if row.frame == 0]
+    assert fates == [("delivered", "lost", "lost")[tick % 50 % 3] for tick in range(201)]
+    short = laglab("run", "lab", *options[:3], "0.3", "--transport", "inline", "--force")
+    assert "holds" not in short.stderr
 
 
 BAD_TIMELINES = {

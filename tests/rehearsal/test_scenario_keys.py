@@ -39,11 +39,14 @@ EXTRA_DELAY: Keys = {
     "distribution": st.sampled_from(["constant", "uniform", "normal", "exponential"]),
     "mean": NOT_NEGATIVE,
     "spread": NOT_NEGATIVE,
+    "quantiles": st.lists(NOT_NEGATIVE, min_size=2, max_size=4).map(sorted),
+    "correlation": st.floats(0, 1, exclude_max=True),
 }
+BY_A_TABLE = {"distribution": st.just("table"), "quantiles": EXTRA_DELAY["quantiles"]}
 BURST: Keys = dict.fromkeys(("good_to_bad", "bad_to_good", "loss_good", "loss_bad"), PROBABILITY)
 IMPAIRMENTS: Keys = {
     **dict.fromkeys(("loss", "reorder", "duplicate", "bit_error_rate"), PROBABILITY),
-    "extra_delay": table(EXTRA_DELAY),
+    "extra_delay": table(EXTRA_DELAY) | st.fixed_dictionaries(BY_A_TABLE),
     "burst": table(BURST),
     "reorder_by": NOT_NEGATIVE,
     "bandwidth": POSITIVE,

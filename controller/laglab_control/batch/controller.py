@@ -11,21 +11,21 @@ from laglab_control.batch import guard
 from laglab_control.batch.estimators import (
     BATCHED,
     BatchEstimator,
+    Present,
     Setting,
-    TurnedEstimate,
+    WindowedEkf,
 )
+from laglab_control.batch.flight import Flight, applied_of, place_of, sent, take_off
 from laglab_control.batch.guard import Found
 from laglab_control.batch.law import Demands, drive, limited, polar_law, stand_still
 from laglab_control.batch.matrices import Symmetric
 from laglab_control.batch.robots import Robots, diverged, prior_of
-from laglab_control.batch.rows import Pose, Speeds
-from laglab_control.batch.turning import Turned, TurnedWay, Turning, nowhere, turned, way_of
+from laglab_control.batch.rows import Pose, Speeds, headings
 from laglab_control.controller import StationConfig
 from laglab_control.errors import ConfigError
 from laglab_control.estimators.family import estimator_kind
 from laglab_control.laws import PolarLaw
 from laglab_control.model import Matrix
-from laglab_control.past.sliding import SlidingProduct
 
 
 class BatchControl(NamedTuple):
@@ -35,7 +35,8 @@ class BatchControl(NamedTuple):
     """Its state."""
     found: Found | None
     """By the guards; None: there are none."""
-    in_flight: SlidingProduct[Turned, TurnedWay]
+    flight: Flight
+    """All commands."""
     drive: Demands
     """The last commands."""
     lost: NDArray[np.bool_]
@@ -85,16 +86,16 @@ class BatchController:
         return polar_law(self.config)
 
     @cached_property
-    def _turning(self) -> Turning:
-        return Turning(self.exact)
-
-    def _step(self, u: Speeds) -> Turned:
-        return turned(self._robots.motion(u))
+    def _exact(self) -> bool:
+        """Also where an odometer does not know the noise of the wheels."""
+        return self.exact or not self._robots.wheels_are_alike
 
     @cached_property
     def _estimator(self) -> BatchEstimator[Any]:
-        setting = Setting(self._robots, self._turning, self.measurement_delay)
-        return BATCHED[self.config.estimator](setting)
+        setting = Setting(self._robots, self.measurement_delay)
+        kind = self.config.estimator
+        make = WindowedEkf if self._exact and kind == "delayed-ekf" else BATCHED[kind]
+        return make(setting)
 
     @cached_property
     def _predicts(self) -> bool:
@@ -103,57 +104,47 @@ class BatchController:
     def start(self) -> BatchControl:
         """Tick 0, before its correction."""
         prior = prior_of(self.config, self.initial_estimates)
-        standing = stand_still(self.robots)
-        flight: SlidingProduct[Turned, TurnedWay]
-        flight = SlidingProduct(self._turning.joined, way_of(nowhere()))
-        for _ in range(self.config.command_delay):
-            flight = _sent(flight, self._step(standing.speeds))
+        flight = take_off(self.config, self.robots, self._exact)
         found = guard.nothing_found(self.robots) if self.config.guard else None
         lost = np.zeros(self.robots, np.bool_)
+        standing = stand_still(self.robots)
         return BatchControl(self._estimator.start(prior), found, flight, standing, lost)
 
     def advance(self, control: BatchControl) -> BatchControl:
         """One tick later: the last commands are on their way, those n ticks older were applied."""
-        sent = self._step(control.drive.speeds)
-        applied, in_flight = _sent(control.in_flight, sent).pop()
+        flight = sent(self.config, control.flight, control.drive.speeds)
+        applied = applied_of(self.config, flight)
         state = self._estimator.predict(control.estimator, applied)
-        return control._replace(estimator=state, in_flight=in_flight)
+        return control._replace(estimator=state, flight=flight)
 
     def answer(self, control: BatchControl, z: Pose | None) -> BatchControl:
         """The tick's correction by z_{k-m}, None before tick m, and the commands."""
-        state, found, in_flight, last, lost, *_ = control
+        state, found, flight, last, lost, *_ = control
         if z is not None:
             state, compared = self._estimator.correct(state, z)
             if found is not None and compared is not None:
                 found = guard.looked_at(found, compared)
-        estimate = self._estimator.estimate(state)
-        if estimate is None:
-            return BatchControl(state, found, in_flight, stand_still(self.robots), lost)
-        (pose, _), P = estimate
+        now = applied_of(self.config, flight)
+        present = self._estimator.estimate(state, now)
+        if present is None:
+            return BatchControl(state, found, flight, stand_still(self.robots), lost)
+        pose, _, P = present
         if P is not None and found is not None:
             P = guard.claimed(P, found)
         lost = lost | diverged(pose, self.config.goal, self.initial_estimates)
-        demands = self._command(estimate._replace(P=P), in_flight, last, lost)
-        return BatchControl(state, found, in_flight, demands, lost, pose, P)
+        demands = self._command(present._replace(P=P), flight, last, lost)
+        return BatchControl(state, found, flight, demands, lost, pose, P)
 
     def _command(
-        self,
-        estimate: TurnedEstimate,
-        in_flight: SlidingProduct[Turned, TurnedWay],
-        last: Demands,
-        lost: NDArray[np.bool_],
+        self, present: Present, flight: Flight, last: Demands, lost: NDArray[np.bool_]
     ) -> Demands:
-        (pose, P), config = estimate, self.config
-        there = self._turning.joined(pose, in_flight.product) if self._predicts else pose
-        heading = None if self.exact else there.heading
-        speeds, at_goal = drive(self._law, there.way, last.at_goal, heading)
+        (there, turn, P), config = present, self.config
+        if self._predicts:
+            there, heading = place_of(config, flight, there, turn)
+        else:
+            heading = headings(there.theta)
+        speeds, at_goal = drive(self._law, there, last.at_goal, None if self._exact else heading)
         speeds = limited(config.limits, speeds, P, last.speeds, config.model.sample_time)
         if lost.any():
             speeds = Speeds(*[np.where(lost, 0.0, each) for each in speeds])
         return Demands(speeds, at_goal)
-
-
-def _sent(
-    flight: SlidingProduct[Turned, TurnedWay], sent: Turned
-) -> SlidingProduct[Turned, TurnedWay]:
-    return flight.push(sent, way_of(sent))

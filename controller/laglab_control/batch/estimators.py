@@ -8,34 +8,46 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple, Protocol, TypeVar
 
+import numpy as np
+
 from laglab_control.batch import matrices
 from laglab_control.batch.matrices import IDENTITY, Square, Symmetric, covariance_of
-from laglab_control.batch.robots import Compared, Robots
+from laglab_control.batch.odometry import (
+    Leg,
+    Spread,
+    Turn,
+    at_origin,
+    carried,
+    spread,
+    uncertain,
+)
+from laglab_control.batch.predicted import predicted
+from laglab_control.batch.robots import Compared, Robots, composed
 from laglab_control.batch.rows import Belief, Pose, Row, difference, headings, pose_of
-from laglab_control.batch.turning import Turned, TurnedWay, Turning, nowhere, turned, way_of
-from laglab_control.motion import Motion
+from laglab_control.motion import STILL, Motion
 from laglab_control.past.log import Log, append, logged
 from laglab_control.past.sliding import SlidingProduct
 
 
-class TurnedEstimate(NamedTuple):
-    """Of the present."""
+class Present(NamedTuple):
+    """The estimates of the present."""
 
-    pose: TurnedWay
+    pose: Pose
+    turn: Turn
+    """From where the odometers of the commands in force look."""
     P: Symmetric | None
-    """What is claimed for its error; None: nothing."""
+    """What is claimed for their errors; None: nothing."""
 
 
-def turned_estimate_of(belief: Turned) -> TurnedEstimate:
-    """In two parts."""
-    return TurnedEstimate(way_of(belief), covariance_of(belief.motion))
+def present_of(belief: Belief, now: Leg) -> Present:
+    """In parts."""
+    return Present(pose_of(belief), Turn.between(now, belief.theta), covariance_of(belief))
 
 
 class Setting(NamedTuple):
     """What an estimator is told."""
 
     robots: Robots
-    turning: Turning
     measurement_delay: int
 
 
@@ -49,58 +61,108 @@ class BatchEstimator(Protocol[S]):
         """The prior of tick 0."""
         ...
 
-    def predict(self, state: S, step: Turned) -> S:
-        """One tick further, by the motions that the inputs applied meanwhile make."""
+    def predict(self, state: S, leg: Leg) -> S:
+        """One tick further, by the inputs applied meanwhile."""
         ...
 
     def correct(self, state: S, z: Pose) -> tuple[S, Compared | None]:
         """With z_{k-m}, and what it was compared with."""
         ...
 
-    def estimate(self, state: S) -> TurnedEstimate | None:
-        """None: there is none."""
+    def estimate(self, state: S, now: Leg) -> Present | None:
+        """At the end of that leg; None: there is none."""
         ...
 
 
-class Delayed(NamedTuple):
-    """The EKF at the newest measurement's tick, and the motions from there to the present."""
+class Windowed(NamedTuple):
+    """The EKF at the newest measurement's tick, and the motion from there to the present."""
 
-    there: Turned
-    window: SlidingProduct[Turned, Turned]
+    there: Belief
+    window: SlidingProduct[Leg, Belief]
+    measured: bool
+
+
+@dataclass(frozen=True, eq=False)
+class WindowedEkf(BatchEstimator[Windowed]):
+    """`delayed-ekf`, to the last bit of where the robots are."""
+
+    setting: Setting
+
+    def start(self, belief: Belief) -> Windowed:
+        still: Belief = Motion(*[np.full(1, each) for each in STILL])
+        return Windowed(belief, SlidingProduct(composed, still), measured=False)
+
+    def predict(self, state: Windowed, leg: Leg) -> Windowed:
+        there, window, measured = state
+        return Windowed(there, window.push(leg, self.setting.robots.motion(leg.u)), measured)
+
+    def correct(self, state: Windowed, z: Pose) -> tuple[Windowed, Compared]:
+        there, window, measured = state
+        robots = self.setting.robots
+        if measured:
+            leg, window = window.pop()
+            there = composed(there, robots.motion(leg.u))
+        there, compared = robots.correct(there, z)
+        return Windowed(there, window, measured=True), compared
+
+    def estimate(self, state: Windowed, now: Leg) -> Present:
+        there, window, _ = state
+        return present_of(composed(there, window.product), now)
+
+
+class Delayed(NamedTuple):
+    """The EKF at the newest measurement's tick, where that is, and the legs from there on."""
+
+    there: Belief
+    at: Leg
+    turn: Turn
+    legs: Log[tuple[Leg, Spread]]
+    since: int
+    """How many of them lead from there to the present."""
+    sums: Spread
+    """Over those."""
     measured: bool
 
 
 @dataclass(frozen=True, eq=False)
 class DelayedEkf(BatchEstimator[Delayed]):
-    """`delayed-ekf`."""
+    """`delayed-ekf`, as fast for long delays as for short ones."""
 
     setting: Setting
 
     def start(self, belief: Belief) -> Delayed:
-        composed = self.setting.turning.composed
-        return Delayed(turned(belief), SlidingProduct(composed, nowhere()), measured=False)
+        at = at_origin(len(belief.x))
+        turn = Turn.between(at, belief.theta)
+        return Delayed(belief, at, turn, logged(), 0, np.zeros((7, len(belief.x))), measured=False)
 
-    def predict(self, state: Delayed, step: Turned) -> Delayed:
-        there, window, measured = state
-        return Delayed(there, window.push(step, step), measured)
+    def predict(self, state: Delayed, leg: Leg) -> Delayed:
+        there, at, turn, legs, since, sums, measured = state
+        one = spread(leg)
+        legs = append(legs, (leg, one), self.setting.measurement_delay + 1)
+        return Delayed(there, at, turn, legs, since + 1, sums + one, measured)
 
     def correct(self, state: Delayed, z: Pose) -> tuple[Delayed, Compared]:
-        there, window, measured = state
+        there, at, turn, legs, since, sums, measured = state
+        robots = self.setting.robots
         if measured:
-            step, window = window.pop()
-            there = self.setting.turning.composed(there, step)
-        belief, compared = self.setting.robots.correct(there.motion, z)
-        return Delayed(turned(belief), window, measured=True), compared
+            at, one = legs.items[legs.length - since]
+            there = predicted(robots.model, there, turn.of(at.before), at.u)
+            since, sums = since - 1, sums - one
+        there, compared = robots.correct(there, z)
+        turn = Turn.between(at, there.theta)
+        return Delayed(there, at, turn, legs, since, sums, measured=True), compared
 
-    def estimate(self, state: Delayed) -> TurnedEstimate:
-        there, window, _ = state
-        return turned_estimate_of(self.setting.turning.composed(there, window.product))
+    def estimate(self, state: Delayed, now: Leg) -> Present:
+        there, at, turn, _, since, sums, _ = state
+        P = uncertain(self.setting.robots.model, sums, since, now.end)
+        belief = carried(there, turn, turn.way(at, now), P)
+        return Present(pose_of(belief), turn, covariance_of(belief))
 
 
 class Paper(NamedTuple):
     """The estimate, the priors of the last ticks, and M*'s factors since the oldest of them."""
 
-    belief: Turned
+    belief: Belief
     left: Square
     """I - K_k."""
     priors: Log[Belief]
@@ -117,21 +179,22 @@ class Popf(BatchEstimator[Paper]):
 
     def start(self, belief: Belief) -> Paper:
         window: SlidingProduct[None, Square] = SlidingProduct(_later_to_the_left, IDENTITY)
-        return Paper(turned(belief), IDENTITY, logged(belief), window, length=0)
+        return Paper(belief, IDENTITY, logged(belief), window, length=0)
 
-    def predict(self, state: Paper, step: Turned) -> Paper:
+    def predict(self, state: Paper, leg: Leg) -> Paper:
         before, left, priors, window, length = state
-        m = self.setting.measurement_delay
-        belief, (cosine, sine) = self.setting.turning.composed(before, step), before.heading
-        distance = step.motion.x
+        m, model = self.setting.measurement_delay, self.setting.robots.model
+        cosine, sine = heading = headings(before.theta)
+        belief = predicted(model, before, heading, leg.u)
+        distance = model.sample_time * leg.u.v
         window = window.push(None, _stepped(distance * cosine, distance * sine, left))
         if length == m:
             window = window.pop()[1]
-        priors = append(priors, belief.motion, m + 1)
+        priors = append(priors, belief, m + 1)
         return Paper(belief, IDENTITY, priors, window, min(length + 1, m))
 
     def correct(self, state: Paper, z: Pose) -> tuple[Paper, Compared]:
-        (belief, _), _, priors, window, length = state
+        belief, _, priors, window, length = state
         m, robots = self.setting.measurement_delay, self.setting.robots
         prior = priors.items[priors.length - 1 - m]
         P_s = covariance_of(prior)
@@ -145,10 +208,10 @@ class Popf(BatchEstimator[Paper]):
         P = matrices.less_outer(covariance_of(belief), K, cross)  # (23)
         belief = Motion(belief.x + d.x, belief.y + d.y, belief.theta + d.theta, *P)
         left = matrices.less_identity(K)
-        return Paper(turned(belief), left, priors, window, length), Compared(v, W)
+        return Paper(belief, left, priors, window, length), Compared(v, W)
 
-    def estimate(self, state: Paper) -> TurnedEstimate:
-        return turned_estimate_of(state.belief)
+    def estimate(self, state: Paper, now: Leg) -> Present:
+        return present_of(state.belief, now)
 
 
 def _later_to_the_left(older: Square, newer: Square) -> Square:
@@ -166,23 +229,22 @@ def _stepped(dx: Row, dy: Row, left: Square) -> Square:
 
 
 @dataclass(frozen=True, eq=False)
-class Ekf(BatchEstimator[Turned]):
+class Ekf(BatchEstimator[Belief]):
     """`ekf`: takes z_{k-m} for z_k."""
 
     setting: Setting
 
-    def start(self, belief: Belief) -> Turned:
-        return turned(belief)
+    def start(self, belief: Belief) -> Belief:
+        return belief
 
-    def predict(self, state: Turned, step: Turned) -> Turned:
-        return self.setting.turning.composed(state, step)
+    def predict(self, state: Belief, leg: Leg) -> Belief:
+        return predicted(self.setting.robots.model, state, headings(state.theta), leg.u)
 
-    def correct(self, state: Turned, z: Pose) -> tuple[Turned, Compared]:
-        belief, compared = self.setting.robots.correct(state.motion, z)
-        return turned(belief), compared
+    def correct(self, state: Belief, z: Pose) -> tuple[Belief, Compared]:
+        return self.setting.robots.correct(state, z)
 
-    def estimate(self, state: Turned) -> TurnedEstimate:
-        return turned_estimate_of(state)
+    def estimate(self, state: Belief, now: Leg) -> Present:
+        return present_of(state, now)
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,16 +256,14 @@ class Raw(BatchEstimator[Pose | None]):
     def start(self, belief: Belief) -> None:
         return None
 
-    def predict(self, state: Pose | None, step: Turned) -> Pose | None:
+    def predict(self, state: Pose | None, leg: Leg) -> Pose | None:
         return state
 
     def correct(self, state: Pose | None, z: Pose) -> tuple[Pose, None]:
         return z, None
 
-    def estimate(self, state: Pose | None) -> TurnedEstimate | None:
-        return (
-            None if state is None else TurnedEstimate(TurnedWay(state, headings(state.theta)), None)
-        )
+    def estimate(self, state: Pose | None, now: Leg) -> Present | None:
+        return None if state is None else Present(state, Turn.between(now, state.theta), None)
 
 
 BATCHED: Mapping[str, Callable[[Setting], BatchEstimator[Any]]] = {

@@ -41,15 +41,19 @@ def drive(
     x, y, theta = pose
     x_goal, y_goal, theta_goal = law.goal
     offset = x_goal - x, y_goal - y
-    rho, psi = _polar_coordinates(*offset) if heading is None else _nearly_polar(*offset)
-    alpha, phi = wrapped(psi - theta), wrapped(psi - theta_goal)
-    ahead = headings(alpha) if heading is None else _seen(offset, rho, heading)
+    if heading is None:
+        rho, psi = _polar_coordinates(*offset)
+        alpha, phi = wrapped(psi - theta), wrapped(psi - theta_goal)
+        ahead = headings(alpha)
+    else:
+        rho, alpha, ahead = _seen(*offset, heading)
+        phi = wrapped(alpha + (theta - theta_goal))
     speeds = _polar(law, rho, alpha, ahead, phi)
     if law.goal_tolerance is None:
         at_goal = np.zeros(len(rho), np.bool_)
     else:
         near, leaving = rho < law.goal_tolerance, rho <= 2 * law.goal_tolerance
-        at_goal = np.where(at_goal, leaving, near)
+        at_goal = near | (at_goal & leaving)
     if at_goal.any():
         turn = law.lambda_ / 2 * wrapped(theta_goal - theta)
         speeds = Speeds(np.where(at_goal, 0.0, speeds.v), np.where(at_goal, turn, speeds.omega))
@@ -62,21 +66,16 @@ def limited(
     """`SpeedLimits.limited`."""
     v, omega = _clamp(asked.v, limits.v_max), _clamp(asked.omega, limits.omega_max)
     if P is not None and limits.caution is not None:
-        share = _share(limits.caution, P)
-        v, omega = share * v, share * omega
+        variance = np.maximum(P.xx, P.yy)
+        wide = variance > limits.caution**2
+        if wide.any():
+            share = np.where(wide, limits.caution / np.sqrt(variance), 1.0)
+            v, omega = share * v, share * omega
     if limits.accel_max is not None:
         v = last.v + _clamp(v - last.v, limits.accel_max * sample_time)
     if limits.alpha_max is not None:
         omega = last.omega + _clamp(omega - last.omega, limits.alpha_max * sample_time)
     return Speeds(v, omega)
-
-
-def _share(caution: float, P: Symmetric) -> Row:
-    variance = np.maximum(P.xx, P.yy)
-    wide = variance > caution**2
-    if not wide.any():
-        return np.ones_like(variance)
-    return np.where(wide, caution / np.sqrt(variance), 1.0)
 
 
 def polar_law(config: StationConfig) -> PolarLaw:
@@ -86,24 +85,34 @@ def polar_law(config: StationConfig) -> PolarLaw:
     return config.law
 
 
-def _nearly_polar(dx: Row, dy: Row) -> tuple[Row, Row]:
-    return np.sqrt(dx * dx + dy * dy), np.arctan2(dy, dx)
-
-
-def _seen(offset: tuple[Row, Row], rho: Row, heading: Heading) -> Heading:
-    """Cosine and sine of the angle between the heading and (dx, dy)."""
-    (dx, dy), (c, s) = offset, heading
-    scale = 1 / rho
-    return (dx * c + dy * s) * scale, (dy * c - dx * s) * scale
+def _seen(dx: Row, dy: Row, heading: Heading) -> tuple[Row, Row, Heading]:
+    """Length and direction of each (dx, dy) as seen from the robot; cosine and sine of that."""
+    c, s = heading
+    along, across = dx * c, dy * c
+    along += dy * s
+    across -= dx * s
+    rho = along * along
+    rho += across * across
+    np.sqrt(rho, rho)
+    alpha = np.arctan2(across, along)
+    along /= rho
+    across /= rho
+    return rho, alpha, (along, across)
 
 
 def _polar(law: PolarLaw, rho: Row, alpha: Row, ahead: Heading, phi: Row) -> Speeds:
     """(4); `ahead`: cosine and sine of alpha."""
     cosine, sine = ahead
     forward = law.gamma * cosine
+    sinc = sine / alpha
     straight = alpha == 0.0
-    sinc = (sine + straight) / (alpha + straight)
-    return Speeds(forward * rho, law.lambda_ * alpha + forward * sinc * (alpha + law.h * phi))
+    if straight.any():
+        sinc[straight] = 1.0
+    sinc *= forward
+    sinc *= alpha + law.h * phi
+    sinc += law.lambda_ * alpha
+    forward *= rho
+    return Speeds(forward, sinc)
 
 
 def _clamp(value: Row, limit: float | None) -> Row:

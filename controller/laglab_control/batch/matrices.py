@@ -1,5 +1,10 @@
-"""Matrices (3, 3) of many robots, element by element."""
+"""Matrices (3, 3) of many robots, element by element.
 
+A sum is gathered in its first product (`a = b * c; a -= d * e`): half of what such short arrays
+cost is the memory for the next one.
+"""
+
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -45,12 +50,22 @@ def covariance_of(belief: Belief) -> Symmetric:
 def inverse(S: Symmetric) -> Symmetric:
     """By cofactors; of positive definite ones."""
     xx, xy, xt, yy, yt, tt = S
-    c_xx, c_xy, c_xt = yy * tt - yt * yt, xt * yt - xy * tt, xy * yt - xt * yy
-    scale = 1 / (xx * c_xx + xy * c_xy + xt * c_xt)
-    c_yy, c_yt, c_tt = xx * tt - xt * xt, xy * xt - xx * yt, xx * yy - xy * xy
-    return Symmetric(
-        c_xx * scale, c_xy * scale, c_xt * scale, c_yy * scale, c_yt * scale, c_tt * scale
-    )
+    c_xx, c_xy, c_xt = _minor(yy, tt, yt, yt), _minor(xt, yt, xy, tt), _minor(xy, yt, xt, yy)
+    c_yy, c_yt, c_tt = _minor(xx, tt, xt, xt), _minor(xy, xt, xx, yt), _minor(xx, yy, xy, xy)
+    scale = xx * c_xx
+    scale += xy * c_xy
+    scale += xt * c_xt
+    np.divide(1.0, scale, scale)
+    for cofactor in (c_xx, c_xy, c_xt, c_yy, c_yt, c_tt):
+        cofactor *= scale
+    return Symmetric(c_xx, c_xy, c_xt, c_yy, c_yt, c_tt)
+
+
+def _minor(a: Row, b: Row, c: Row, d: Row) -> Row:
+    """a b - c d."""
+    minor = a * b
+    minor -= c * d
+    return minor
 
 
 def weighted(v: Pose, weights: Symmetric) -> Row:
@@ -62,12 +77,15 @@ def weighted(v: Pose, weights: Symmetric) -> Row:
 
 def times_vector(K: Square, v: Pose) -> Pose:
     """K v."""
-    x, y, t = v
-    return Way(
-        K.xx * x + K.xy * y + K.xt * t,
-        K.yx * x + K.yy * y + K.yt * t,
-        K.tx * x + K.ty * y + K.tt * t,
-    )
+    return Way(*[_dot(row, v) for row in (K[:3], K[3:6], K[6:])])
+
+
+def _dot(row: Sequence[Row], v: Pose) -> Row:
+    a, b, c = row
+    total = a * v.x
+    total += b * v.y
+    total += c * v.theta
+    return total
 
 
 def whole(P: Symmetric) -> Square:

@@ -1,5 +1,7 @@
 """(27) for many robots."""
 
+import numpy as np
+
 from laglab_control.batch.rows import Belief, Row, Speeds
 from laglab_control.motion import Motion
 from laglab_control.robot import RobotModel
@@ -16,11 +18,22 @@ def predicted(model: RobotModel, belief: Belief, heading: tuple[Row, Row], u: Sp
     c, s = heading
     distance = model.sample_time * u.v
     dx, dy = c * distance, s * distance
-    xt_led, yt_led = xt - dy * tt, yt + dx * tt
-    along, across = n_xx * c, n_xx * s
-    xx, yy = xx - dy * (xt + xt_led) + along * c, yy + dx * (yt + yt_led) + across * s
-    xy = xy + dx * xt_led - dy * yt + along * s
+    xt_led, yt_led, along = dy * tt, dx * tt, n_xx * c
+    np.subtract(xt, xt_led, xt_led)
+    yt_led += yt
+    xx_led, xy_led, yy_led = along * c, along * s, s * s
+    yy_led *= n_xx
+    xx_led -= dy * (xt + xt_led)
+    xx_led += xx
+    xy_led += dx * xt_led
+    xy_led -= dy * yt
+    xy_led += xy
+    yy_led += dx * (yt + yt_led)
+    yy_led += yy
     if n_xt:
-        xt_led, yt_led = xt_led + n_xt * c, yt_led + n_xt * s
+        xt_led += n_xt * c
+        yt_led += n_xt * s
+    dx += x
+    dy += y
     turned = theta + model.sample_time * u.omega
-    return Motion(x + dx, y + dy, turned, xx, xy, xt_led, yy, yt_led, tt + n_tt)
+    return Motion(dx, dy, turned, xx_led, xy_led, xt_led, yy_led, yt_led, tt + n_tt)

@@ -1,5 +1,6 @@
 """What the model says of many robots that are alike, and what is known of them."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,7 +15,7 @@ from laglab_control.batch.rows import Belief, Pose, Row, Speeds, difference, hea
 from laglab_control.controller import FAR, StationConfig
 from laglab_control.errors import ConfigError
 from laglab_control.model import Matrix
-from laglab_control.motion import Motion, composed_along
+from laglab_control.motion import Motion, composed_along, joined_along
 from laglab_control.robot import RobotModel
 
 
@@ -43,6 +44,11 @@ def composed(first: Belief, second: Belief) -> Belief:
     return composed_along(headings(first.theta), first, second)
 
 
+def joined(first: Pose, second: Pose) -> Pose:
+    """Two ways in a row."""
+    return joined_along(headings(first.theta), first, second)
+
+
 def prior_of(config: StationConfig, initial_estimates: Matrix) -> Belief:
     """Of tick 0: the poses (3, robots), and P_0."""
     x, y, theta = np.array(initial_estimates)
@@ -52,12 +58,15 @@ def prior_of(config: StationConfig, initial_estimates: Matrix) -> Belief:
 
 def diverged(pose: Pose, goal: Sequence[float], began: Matrix) -> NDArray[np.bool_]:
     """Not finite, or FAR from where it began and from the goal."""
-    near = _within(pose, *goal[:2]) | _within(pose, *began[:2])
+    near = _within(pose, *goal[:2])
+    if not near.all():
+        near |= _within(pose, *began[:2])
     return ~(near & np.isfinite(pose.theta))
 
 
 def _within(pose: Pose, x: Row | float, y: Row | float) -> NDArray[np.bool_]:
-    return np.hypot(pose.x - x, pose.y - y) <= FAR
+    dx, dy = pose.x - x, pose.y - y
+    return dx * dx + dy * dy <= FAR**2
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +91,12 @@ class Robots:
         x, y, theta = np.diag(self.model.R).tolist()
         return x, y, theta
 
+    @cached_property
+    def wheels_are_alike(self) -> bool:
+        """Whether the noise of their sum is independent of that of their difference."""
+        along, _, together, _, _, turning = self.model.noise
+        return abs(together) <= 1e-12 * math.sqrt(along * turning)
+
     def motion(self, u: Speeds) -> Belief:
         """One tick of (3): `RobotModel.motion`."""
         Ts = self.model.sample_time
@@ -94,14 +109,16 @@ class Robots:
         return matrices.inverse(Symmetric(xx + x, xy, xt, yy + y, yt, tt + theta))
 
     def correct(self, prior: Belief, z: Pose) -> tuple[Belief, Compared]:
-        """(8): K = P S^-1, and P+ = P - P S^-1 P = R - R S^-1 R."""
-        P = covariance_of(prior)
-        v, W = difference(z, pose_of(prior)), self.weights(P)
-        d = matrices.times_vector(matrices.whole(P), matrices.times_vector(matrices.whole(W), v))
+        """(8): K = P S^-1 = I - R S^-1, and P+ = P - P S^-1 P = R - R S^-1 R."""
+        v, W = difference(z, pose_of(prior)), self.weights(covariance_of(prior))
+        d = matrices.times_vector(matrices.whole(W), v)
+        for each, variance, seen, before in zip(d, self._variances, v, prior, strict=False):
+            each *= -variance
+            each += seen
+            each += before
         x, y, t = self._variances
-        posterior = Motion(
-            *(prior.x + d.x, prior.y + d.y, prior.theta + d.theta),
-            *(x - x * x * W.xx, -x * y * W.xy, -x * t * W.xt),
-            *(y - y * y * W.yy, -y * t * W.yt, t - t * t * W.tt),
-        )
-        return posterior, Compared(v, W)
+        xx, xy, xt, yy, yt, tt = W
+        P = xx * -(x * x), xy * -(x * y), xt * -(x * t), yy * -(y * y), yt * -(y * t), tt * -(t * t)
+        for i, variance in zip((0, 3, 5), self._variances, strict=True):
+            P[i][:] += variance
+        return Motion(*d, *P), Compared(v, W)

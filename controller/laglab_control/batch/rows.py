@@ -29,8 +29,9 @@ def pose_of(belief: Belief) -> Pose:
 
 def wrapped(angle: Row) -> Row:
     """The same angles in (-pi, pi]; NaN where one is not finite."""
-    remainder = angle - 2 * np.pi * np.rint(angle / (2 * np.pi))
-    return np.where(remainder <= -np.pi, np.pi, remainder)
+    remainder: Row = angle - 2 * np.pi * np.rint(angle * (0.5 / np.pi))
+    wrong = remainder <= -np.pi
+    return np.where(wrong, np.pi, remainder) if wrong.any() else remainder
 
 
 Heading = tuple[Row, Row]

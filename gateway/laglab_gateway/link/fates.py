@@ -1,13 +1,18 @@
 """What becomes of each frame on an impaired link. Seeded, and without a clock: time is given."""
 
+import math
 from collections.abc import Sequence
 from enum import StrEnum
+from statistics import NormalDist
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from laglab_gateway.link.impairments import Burst, Impairments
+from laglab_gateway.link.impairments import Burst, ExtraDelay, Impairments
 from laglab_gateway.link.timeline import Event, in_force, within
+
+LEAST_SHARE = 1e-12
+"""What is rarer is drawn as if it were as rare as that: at 0 and 1 delays may be infinite."""
 
 
 class FateKind(StrEnum):
@@ -47,6 +52,7 @@ class RandomFates:
         self._rng = rng
         self._bad = False
         self._line_free = 0.0
+        self._score: float | None = None
 
     def of(self, tick: int, time: float, raw: bytes) -> list[Fate]:  # noqa: ARG002 the time tells
         """In the order in which a real link does it: lost on air, queued, bits flipped, late."""
@@ -94,5 +100,17 @@ class RandomFates:
         return bytes(np.frombuffer(raw, np.uint8) ^ np.packbits(flips))
 
     def _late(self, link: Impairments) -> float:
-        extra = link.extra_delay.draw(self._rng) if link.extra_delay else 0.0
+        extra = self._extra(link.extra_delay) if link.extra_delay else 0.0
         return extra + (link.reorder_by if self._happens(link.reorder) else 0.0)
+
+    def _extra(self, delay: ExtraDelay) -> float:
+        """Correlated delays have normal scores that wander: an autoregression of first order."""
+        if delay.correlation == 0:
+            return delay.draw(self._rng)
+        new = self._rng.standard_normal()
+        if self._score is None:
+            self._score = new
+        else:
+            kept = delay.correlation
+            self._score = kept * self._score + math.sqrt(1 - kept**2) * new
+        return delay.at(min(max(NormalDist().cdf(self._score), LEAST_SHARE), 1 - LEAST_SHARE))

@@ -1,11 +1,31 @@
 """What a link does to frames besides delaying them by n or m ticks: the values, checked."""
 
+import math
+from itertools import pairwise
+from statistics import NormalDist
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import AfterValidator, Field, ValidationInfo
 
-from laglab_gateway.values import Positive, Probability, Seconds, Whole, checked, described, saying
+from laglab_gateway.values import (
+    Number,
+    Positive,
+    Probability,
+    Seconds,
+    Whole,
+    checked,
+    described,
+    saying,
+)
+
+
+def _of_a_table(quantiles: tuple[float, ...], about: ValidationInfo) -> tuple[float, ...]:
+    if about.data.get("distribution") == "table" and len(quantiles) < 2:
+        raise ValueError("a table has two delays or more")
+    if any(later < earlier for earlier, later in pairwise(quantiles)):
+        raise ValueError("must rise from one to the next")
+    return quantiles
 
 
 @checked
@@ -13,17 +33,38 @@ class ExtraDelay:
     """A random delay on top of the fixed one, never below 0."""
 
     distribution: Annotated[
-        Literal["constant", "uniform", "normal", "exponential"],
-        described("-", "How it scatters: `constant`, `uniform`, `normal` or `exponential`."),
+        Literal["constant", "uniform", "normal", "exponential", "table"],
+        described(
+            "-",
+            "How it scatters: `constant`, `uniform`, `normal`, `exponential`, or by a `table`.",
+        ),
     ] = "constant"
-    mean: Annotated[Seconds, described("s", "The mean of the distribution.")] = 0.0
+    mean: Annotated[
+        Seconds, described("s", "The mean of the distribution; is added to a table's delays.")
+    ] = 0.0
     spread: Annotated[
         Seconds,
         described("s", "Half the width of `uniform`, the standard deviation of `normal`."),
     ] = 0.0
+    quantiles: Annotated[
+        tuple[Seconds, ...],
+        AfterValidator(_of_a_table),
+        Field(validate_default=True),
+        described(
+            "s",
+            "Of a `table`: the delays at equal steps of probability, from the least to the most.",
+        ),
+    ] = ()
+    correlation: Annotated[
+        Number,
+        Field(ge=0, lt=1),
+        described(
+            "1", "How much a frame's delay tells of the next one's: that of their normal scores."
+        ),
+    ] = 0.0
 
     def draw(self, rng: np.random.Generator) -> float:
-        """One delay [s]."""
+        """One delay [s], whatever the last one was."""
         match self.distribution:
             case "constant":
                 delay = self.mean
@@ -33,6 +74,25 @@ class ExtraDelay:
                 delay = rng.normal(self.mean, self.spread)
             case "exponential":
                 delay = rng.exponential(self.mean)
+            case "table":
+                delay = self.at(rng.random())
+        return max(0.0, delay)
+
+    def at(self, share: float) -> float:
+        """The delay [s] within which such a share stays, above 0 and below 1."""
+        match self.distribution:
+            case "constant":
+                delay = self.mean
+            case "uniform":
+                delay = self.mean + self.spread * (2 * share - 1)
+            case "normal":
+                delay = self.mean + self.spread * NormalDist().inv_cdf(share)
+            case "exponential":
+                delay = -self.mean * math.log1p(-share)
+            case "table":
+                place = share * (len(self.quantiles) - 1)
+                known = np.arange(len(self.quantiles))
+                delay = self.mean + float(np.interp(place, known, self.quantiles))
         return max(0.0, delay)
 
 

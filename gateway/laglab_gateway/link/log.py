@@ -1,8 +1,7 @@
 """`link.csv`: what was done to every frame, and how to have it done again."""
 
 import csv
-from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -27,23 +26,44 @@ LINK_HEADER = ",".join(LinkRow._fields) + "\n"
 
 
 class RecordedFates:
-    """The fates of another run, frame by frame; frames that it did not have are delivered."""
+    """The fates of another run, frame by frame. A longer run goes through them again.
 
-    def __init__(self, rows: Iterable[LinkRow]) -> None:
-        self._fates: dict[tuple[int, int], list[tuple[FateKind, float]]] = defaultdict(list)
+    What goes into the link with a recorded frame, and has no record of its own, shares its fate:
+    it was in the same datagram. Where there is no record of a tick at all, frames are delivered.
+    """
+
+    def __init__(self, rows: Sequence[LinkRow], ticks: range | None = None) -> None:
+        """`ticks` are those that the record tells of; by default from the first row's on to the
+        last one's."""
+        self._ticks = recorded_ticks(rows) if ticks is None else ticks
+        self._fates: dict[int, dict[int, list[tuple[FateKind, float]]]] = {}
         for row in rows:
-            self._fates[row.tick, row.frame].append((FateKind(row.fate), row.extra))
+            frames = self._fates.setdefault(row.tick, {})
+            frames.setdefault(row.frame, []).append((FateKind(row.fate), row.extra))
         self._tick, self._frame = -1, 0
 
     def of(self, tick: int, time: float, raw: bytes) -> list[Fate]:  # noqa: ARG002 the tick tells
         """As recorded for the frame of the same number in the same tick."""
         self._frame = self._frame + 1 if tick == self._tick else 0
         self._tick = tick
-        recorded = self._fates.get((tick, self._frame), [(FateKind.DELIVERED, 0.0)])
         return [
             Fate(kind, extra, raw if kind is FateKind.DELIVERED else b"")
-            for kind, extra in recorded
+            for kind, extra in self._recorded(tick)
         ]
+
+    def _recorded(self, tick: int) -> list[tuple[FateKind, float]]:
+        if self._ticks:
+            tick = self._ticks[(tick - self._ticks.start) % len(self._ticks)]
+        frames = self._fates.get(tick)
+        if frames is None:
+            return [(FateKind.DELIVERED, 0.0)]
+        return frames[min(self._frame, max(frames))]
+
+
+def recorded_ticks(*directions: Sequence[LinkRow]) -> range:
+    """The ticks that the rows tell of, from the first to the last of any direction."""
+    ticks = [row.tick for rows in directions for row in rows]
+    return range(min(ticks), max(ticks) + 1) if ticks else range(0)
 
 
 def read_link_log(path: Path, direction: Direction) -> list[LinkRow]:

@@ -31,6 +31,15 @@ UNKNOWN_DELAY = 65535
 RECALLED = 12
 """Ticks that one LAGLAB_APPLIED tells of."""
 
+NO_PROBE = 4294967295
+"""In Probe.came, where none is told of."""
+
+PROBE_LAGS = (0, 16, 240)
+"""Of Probe.came, by place: an arrival is told so many arrivals later."""
+
+PROBE_FILLER = 180
+"""Bytes that a probe may be longer than its other fields."""
+
 ROBOT_SYSTEM, ROBOT_COMPONENT = 1, 1
 STATION_SYSTEM, STATION_COMPONENT = 200, 190
 
@@ -150,6 +159,18 @@ class Applied(Message, frozen=True):
     count: int
 
 
+class Probe(Message, frozen=True):
+    """Either side, to measure the link: its clock [ns], and when which of the other's came."""
+
+    time_ns: int
+    came_ns: tuple[int, ...]
+    session: int
+    sequence: int
+    interval_us: int
+    came: tuple[int, ...]
+    filler: tuple[int, ...]
+
+
 WRITTEN_OUT: dict[str, type[Message]] = {
     "LAGLAB_TICK": Tick,
     "LAGLAB_MEASUREMENT": Measurement,
@@ -159,6 +180,7 @@ WRITTEN_OUT: dict[str, type[Message]] = {
     "LAGLAB_SETTINGS": Settings,
     "LAGLAB_RECALL": Recall,
     "LAGLAB_APPLIED": Applied,
+    "LAGLAB_PROBE": Probe,
     **STANDARD,
     **GEOGRAPHIC,
     **MISSIONS,

@@ -68,7 +68,8 @@ OF_SEVERAL_KEYS: dict[str, Any] = {
         typer.Option(
             "--timeline",
             metavar="FILE",
-            help="What the link does when: TOML, or a run's link.csv.",
+            help="What the link does when: TOML, or a link.csv, of a run or measured; a longer run "
+            "goes through it again.",
         ),
     ],
     "set": Annotated[

@@ -16,7 +16,7 @@ from laglab.results.complete import Way
 from laglab.results.place import place
 from laglab.runs.plant import check_plant
 from laglab.runs.rehearse import Transport
-from laglab.runs.robot_side import Setup
+from laglab.runs.robot_side import Setup, wrapped_replay
 from laglab.runs.station_side import check_parts
 from laglab.runs.whole import run_into
 from laglab.scenario import Scenario
@@ -79,6 +79,8 @@ def run(
     check_parts(scenario)
     if plant is None:
         check_plant(scenario)
+    if said := wrapped_replay(scenario):
+        typer.echo(said, err=True)
     way = Way("both", transport, plant or scenario.plant.called)
     with shown_live(scenario, way, live, open_) as page:
         directory = place(scenario, out, force)

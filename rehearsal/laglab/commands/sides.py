@@ -29,7 +29,7 @@ from laglab.results.station_record import StationRecord
 from laglab.runs.alone import answer_alone, serve_alone
 from laglab.runs.clock import LoopClock
 from laglab.runs.glance import Told, watched
-from laglab.runs.robot_side import Setup, open_robot
+from laglab.runs.robot_side import Setup, open_robot, wrapped_replay
 from laglab.runs.station_side import open_station
 from laglab.scenario import Scenario
 from laglab_gateway import FileRecorder, Patience, Surroundings
@@ -105,6 +105,8 @@ def gateway(
         way = Way("robot", link.name, plant or scenario.plant.called)
         page = stack.enter_context(shown_live(scenario, way, live, open_))
         directory = place(scenario, out, force)
+        if said := wrapped_replay(scenario):
+            _say(said)
         _say_whom_we_wait_for("the controller", link)
         for each in watchers:
             _say(f"a ground station may look on at {each.name}")

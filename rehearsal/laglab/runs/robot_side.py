@@ -1,5 +1,6 @@
 """The robot's side of a rehearsal, from its scenario: a gateway, and the FMU or a real robot."""
 
+import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -32,6 +33,7 @@ from laglab_gateway import (
     Watch,
     Watcher,
     read_link_log,
+    recorded_ticks,
     serve_lockstep,
     serve_realtime,
     serve_remote,
@@ -141,7 +143,9 @@ DIRECTIONS: tuple[Direction, ...] = ("command", "measurement")
 def link_fates(scenario: Scenario) -> dict[Direction, Fates]:
     """What decides over the frames of each direction that is not ideal, seeded by the scenario."""
     if (log := scenario.link.replay) is not None:
-        return {direction: RecordedFates(read_link_log(log, direction)) for direction in DIRECTIONS}
+        rows = {direction: read_link_log(log, direction) for direction in DIRECTIONS}
+        ticks = recorded_ticks(*rows.values())
+        return {direction: RecordedFates(rows[direction], ticks) for direction in DIRECTIONS}
     fates: dict[Direction, Fates] = {}
     for number, direction in enumerate(DIRECTIONS):
         impairments = getattr(scenario.link, direction)
@@ -150,6 +154,19 @@ def link_fates(scenario: Scenario) -> dict[Direction, Fates]:
             rng = np.random.default_rng((scenario.seed, number))
             fates[direction] = RandomFates(impairments, events, rng)
     return fates
+
+
+def wrapped_replay(scenario: Scenario) -> str | None:
+    """In a line, that a run is longer than what it replays; None where it is not."""
+    if (log := scenario.link.replay) is None:
+        return None
+    recorded = len(recorded_ticks(*(read_link_log(log, direction) for direction in DIRECTIONS)))
+    ticks = math.inf if scenario.last_tick is None else scenario.last_tick + 1
+    if not 0 < recorded < ticks:
+        return None
+    times = "again and again" if math.isinf(ticks) else f"{ticks / recorded:.3g} times"
+    seconds = recorded * scenario.sample_time
+    return f"{log} holds {seconds:g} s of a link: the run goes through it {times}"
 
 
 @dataclass(frozen=True)

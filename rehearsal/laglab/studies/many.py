@@ -7,7 +7,7 @@ link does more than delay, what happens when is found out first, seed by seed (`
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -95,8 +95,8 @@ def is_ideal(scenario: Scenario) -> bool:
 def _unwritten(last: int, robots: int) -> Many:
     return Many(
         truth=np.empty((last + 1, 3, robots)),
-        estimates=np.full((last + 1, 3, robots), np.nan),
-        P=np.full((last + 1, 6, robots), np.nan),
+        estimates=np.empty((last + 1, 3, robots)),
+        P=np.empty((last + 1, 6, robots)),
         applied=np.empty((last + 1, 2, robots)),
         last_tick=np.full(robots, last),
         diverged=np.zeros(robots, np.bool_),
@@ -128,15 +128,23 @@ def _run(fleet: Fleet, scenario: Scenario, answer: Callable[[Pose], Answers], ma
     for k in range(last + 1):
         many.truth[k] = fleet.readings[:, :3].T
         pose, P, sent, applied, lost, acts = answer(Pose(*fleet.readings[:, 3:6].T.copy()))
-        if pose is not None and P is not None:  # as the station reports it
-            many.estimates[k], many.P[k] = pose, P
-        many.applied[k] = applied
+        if pose is None or P is None:  # as the station reports it
+            many.estimates[k], many.P[k] = np.nan, np.nan
+        else:
+            _keep(many.estimates[k], pose)
+            _keep(many.P[k], P)
+        _keep(many.applied[k], applied)
         many.unsure[:] |= ~many.diverged & (acts | refused(sent, scenario.safety))
         ends = lost & ~many.diverged
         many.last_tick[ends] = k
         many.diverged[:] |= ends
         if k < last:
             fleet.step(wheels.turning(applied))
+
+
+def _keep(rows: Array, values: Iterable[Array]) -> None:
+    for row, each in zip(rows, values, strict=True):
+        row[:] = each
 
 
 class OnTime:
@@ -207,4 +215,8 @@ class Wheels:
     def turning(self, speeds: Speeds) -> Array:
         """(robots, 2) [rad/s], column-major as the FMU reads them."""
         turn = speeds.omega * self._half_track
-        return np.stack((speeds.v - turn, speeds.v + turn)).T / self._radius
+        wheels = np.empty((2, len(turn)))
+        np.subtract(speeds.v, turn, wheels[0])
+        np.add(speeds.v, turn, wheels[1])
+        wheels /= self._radius
+        return wheels.T

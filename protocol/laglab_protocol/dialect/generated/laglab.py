@@ -6353,6 +6353,7 @@ MAVLINK_MSG_ID_LAGLAB_END = 52104
 MAVLINK_MSG_ID_LAGLAB_SETTINGS = 52105
 MAVLINK_MSG_ID_LAGLAB_RECALL = 52106
 MAVLINK_MSG_ID_LAGLAB_APPLIED = 52107
+MAVLINK_MSG_ID_LAGLAB_PROBE = 52110
 MAVLINK_MSG_ID_SYS_STATUS = 1
 MAVLINK_MSG_ID_SYSTEM_TIME = 2
 MAVLINK_MSG_ID_PING = 4
@@ -6958,6 +6959,53 @@ class MAVLink_laglab_applied_message(MAVLink_message):
 # Define name on the class for backwards compatibility (it is now msgname).
 # Done with setattr to hide the class variable from mypy.
 setattr(MAVLink_laglab_applied_message, "name", mavlink_msg_deprecated_name_property())
+
+
+class MAVLink_laglab_probe_message(MAVLink_message):
+    """
+    Either side, to measure the link; no part of a run. Whoever
+    measures sends one every interval; whoever hears one sends its
+    own, every interval too, for as long as they come. The filler
+    makes each as long as what a tick sends that way.
+    """
+
+    id = MAVLINK_MSG_ID_LAGLAB_PROBE
+    msgname = "LAGLAB_PROBE"
+    fieldnames = ["time_ns", "came_ns", "session", "sequence", "interval_us", "came", "filler"]
+    ordered_fieldnames = ["time_ns", "came_ns", "session", "sequence", "interval_us", "came", "filler"]
+    fieldtypes = ["uint64_t", "uint64_t", "uint32_t", "uint32_t", "uint32_t", "uint32_t", "uint8_t"]
+    fielddisplays_by_name: Dict[str, str] = {}
+    fieldenums_by_name: Dict[str, str] = {}
+    fieldunits_by_name: Dict[str, str] = {"time_ns": "ns", "came_ns": "ns", "interval_us": "us"}
+    native_format = bytearray(b"<QQIIIIB")
+    orders = [0, 1, 2, 3, 4, 5, 6]
+    lengths = [1, 3, 1, 1, 1, 3, 180]
+    array_lengths = [0, 3, 0, 0, 0, 3, 180]
+    crc_extra = 116
+    unpacker = struct.Struct("<Q3QIII3I180B")
+    instance_field = None
+    instance_offset = -1
+
+    def __init__(self, time_ns: int, came_ns: Sequence[int], session: int, sequence: int, interval_us: int, came: Sequence[int], filler: Sequence[int]):
+        MAVLink_message.__init__(self, MAVLink_laglab_probe_message.id, MAVLink_laglab_probe_message.msgname)
+        self._fieldnames = MAVLink_laglab_probe_message.fieldnames
+        self._instance_field = MAVLink_laglab_probe_message.instance_field
+        self._instance_offset = MAVLink_laglab_probe_message.instance_offset
+        self.time_ns = time_ns
+        self.came_ns = came_ns
+        self.session = session
+        self.sequence = sequence
+        self.interval_us = interval_us
+        self.came = came
+        self.filler = filler
+
+    def pack(self, mav: "MAVLink", force_mavlink1: bool = False) -> bytes:
+        return self._pack(mav, self.crc_extra, self.unpacker.pack(self.time_ns, self.came_ns[0], self.came_ns[1], self.came_ns[2], self.session, self.sequence, self.interval_us, self.came[0], self.came[1], self.came[2], self.filler[0], self.filler[1], self.filler[2], self.filler[3], self.filler[4], self.filler[5], self.filler[6], self.filler[7], self.filler[8], self.filler[9], self.filler[10], self.filler[11], self.filler[12], self.filler[13], self.filler[14], self.filler[15], self.filler[16], self.filler[17], self.filler[18], self.filler[19], self.filler[20], self.filler[21], self.filler[22], self.filler[23], self.filler[24], self.filler[25], self.filler[26], self.filler[27], self.filler[28], self.filler[29], self.filler[30], self.filler[31], self.filler[32], self.filler[33], self.filler[34], self.filler[35], self.filler[36], self.filler[37], self.filler[38], self.filler[39], self.filler[40], self.filler[41], self.filler[42], self.filler[43], self.filler[44], self.filler[45], self.filler[46], self.filler[47], self.filler[48], self.filler[49], self.filler[50], self.filler[51], self.filler[52], self.filler[53], self.filler[54], self.filler[55], self.filler[56], self.filler[57], self.filler[58], self.filler[59], self.filler[60], self.filler[61], self.filler[62], self.filler[63], self.filler[64], self.filler[65], self.filler[66], self.filler[67], self.filler[68], self.filler[69], self.filler[70], self.filler[71], self.filler[72], self.filler[73], self.filler[74], self.filler[75], self.filler[76], self.filler[77], self.filler[78], self.filler[79], self.filler[80], self.filler[81], self.filler[82], self.filler[83], self.filler[84], self.filler[85], self.filler[86], self.filler[87], self.filler[88], self.filler[89], self.filler[90], self.filler[91], self.filler[92], self.filler[93], self.filler[94], self.filler[95], self.filler[96], self.filler[97], self.filler[98], self.filler[99], self.filler[100], self.filler[101], self.filler[102], self.filler[103], self.filler[104], self.filler[105], self.filler[106], self.filler[107], self.filler[108], self.filler[109], self.filler[110], self.filler[111], self.filler[112], self.filler[113], self.filler[114], self.filler[115], self.filler[116], self.filler[117], self.filler[118], self.filler[119], self.filler[120], self.filler[121], self.filler[122], self.filler[123], self.filler[124], self.filler[125], self.filler[126], self.filler[127], self.filler[128], self.filler[129], self.filler[130], self.filler[131], self.filler[132], self.filler[133], self.filler[134], self.filler[135], self.filler[136], self.filler[137], self.filler[138], self.filler[139], self.filler[140], self.filler[141], self.filler[142], self.filler[143], self.filler[144], self.filler[145], self.filler[146], self.filler[147], self.filler[148], self.filler[149], self.filler[150], self.filler[151], self.filler[152], self.filler[153], self.filler[154], self.filler[155], self.filler[156], self.filler[157], self.filler[158], self.filler[159], self.filler[160], self.filler[161], self.filler[162], self.filler[163], self.filler[164], self.filler[165], self.filler[166], self.filler[167], self.filler[168], self.filler[169], self.filler[170], self.filler[171], self.filler[172], self.filler[173], self.filler[174], self.filler[175], self.filler[176], self.filler[177], self.filler[178], self.filler[179]), force_mavlink1=force_mavlink1)
+
+
+# Define name on the class for backwards compatibility (it is now msgname).
+# Done with setattr to hide the class variable from mypy.
+setattr(MAVLink_laglab_probe_message, "name", mavlink_msg_deprecated_name_property())
 
 
 class MAVLink_sys_status_message(MAVLink_message):
@@ -17042,6 +17090,7 @@ mavlink_map: Dict[int, Type[MAVLink_message]] = {
     MAVLINK_MSG_ID_LAGLAB_SETTINGS: MAVLink_laglab_settings_message,
     MAVLINK_MSG_ID_LAGLAB_RECALL: MAVLink_laglab_recall_message,
     MAVLINK_MSG_ID_LAGLAB_APPLIED: MAVLink_laglab_applied_message,
+    MAVLINK_MSG_ID_LAGLAB_PROBE: MAVLink_laglab_probe_message,
     MAVLINK_MSG_ID_SYS_STATUS: MAVLink_sys_status_message,
     MAVLINK_MSG_ID_SYSTEM_TIME: MAVLink_system_time_message,
     MAVLINK_MSG_ID_PING: MAVLink_ping_message,
@@ -17915,6 +17964,42 @@ class MAVLink(object):
 
         """
         self.send(self.laglab_applied_encode(v, omega, first, count), force_mavlink1=force_mavlink1)
+
+    def laglab_probe_encode(self, time_ns: int, came_ns: Sequence[int], session: int, sequence: int, interval_us: int, came: Sequence[int], filler: Sequence[int]) -> MAVLink_laglab_probe_message:
+        """
+        Either side, to measure the link; no part of a run. Whoever measures
+        sends one every interval; whoever hears one sends its own,
+        every interval too, for as long as they come. The filler makes
+        each as long as what a tick sends that way.
+
+        time_ns                   : When this frame was sent, by the sender's clock. [ns] (type:uint64_t)
+        came_ns                   : When the frames of the field came arrived, by the sender's clock. [ns] (type:uint64_t)
+        session                   : Chosen by whoever measures, anew each time; repeated by the other. (type:uint32_t)
+        sequence                  : Frames that the sender sent before in this session. (type:uint32_t)
+        interval_us               : Time from frame to frame. [us] (type:uint32_t)
+        came                      : Sequences of frames that arrived here, each told once in each place: at once, 16 arrivals later and 240 later, so that a gap in what is told hides none. (type:uint32_t)
+        filler                    : Ones, as many as make the frame as long as it is to be; then zeros, which do not travel. (type:uint8_t)
+
+        """
+        return MAVLink_laglab_probe_message(time_ns, came_ns, session, sequence, interval_us, came, filler)
+
+    def laglab_probe_send(self, time_ns: int, came_ns: Sequence[int], session: int, sequence: int, interval_us: int, came: Sequence[int], filler: Sequence[int], force_mavlink1: bool = False) -> None:
+        """
+        Either side, to measure the link; no part of a run. Whoever measures
+        sends one every interval; whoever hears one sends its own,
+        every interval too, for as long as they come. The filler makes
+        each as long as what a tick sends that way.
+
+        time_ns                   : When this frame was sent, by the sender's clock. [ns] (type:uint64_t)
+        came_ns                   : When the frames of the field came arrived, by the sender's clock. [ns] (type:uint64_t)
+        session                   : Chosen by whoever measures, anew each time; repeated by the other. (type:uint32_t)
+        sequence                  : Frames that the sender sent before in this session. (type:uint32_t)
+        interval_us               : Time from frame to frame. [us] (type:uint32_t)
+        came                      : Sequences of frames that arrived here, each told once in each place: at once, 16 arrivals later and 240 later, so that a gap in what is told hides none. (type:uint32_t)
+        filler                    : Ones, as many as make the frame as long as it is to be; then zeros, which do not travel. (type:uint8_t)
+
+        """
+        self.send(self.laglab_probe_encode(time_ns, came_ns, session, sequence, interval_us, came, filler), force_mavlink1=force_mavlink1)
 
     def sys_status_encode(self, onboard_control_sensors_present: int, onboard_control_sensors_enabled: int, onboard_control_sensors_health: int, load: int, voltage_battery: int, current_battery: int, battery_remaining: int, drop_rate_comm: int, errors_comm: int, errors_count1: int, errors_count2: int, errors_count3: int, errors_count4: int, onboard_control_sensors_present_extended: int = 0, onboard_control_sensors_enabled_extended: int = 0, onboard_control_sensors_health_extended: int = 0) -> MAVLink_sys_status_message:
         """

@@ -43,7 +43,8 @@ class LinkTable(Table):
         Annotated[Path, AfterValidator(_readable)] | None,
         described(
             "-",
-            "A run's `link.csv`, relative to the scenario's folder: what happened to its frames "
-            "happens again, and nothing else.",
+            "The `link.csv` of a run or a measurement, relative to the scenario's folder: what "
+            "happened to its frames happens again, and nothing else; a longer run goes through it "
+            "again.",
         ),
     ] = None

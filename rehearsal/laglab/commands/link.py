@@ -1,0 +1,245 @@
+"""`laglab link`: the link you have, measured."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from laglab.commands.figure import WidthOption
+from laglab.commands.group import group
+from laglab.commands.run import KeyOption
+from laglab.extras import DRAWING, require
+from laglab.link.advice import suggestions
+from laglab.link.errors import LinkPlaceError
+from laglab.link.figure import draw_fit
+from laglab.link.fitting import fit as fit_link
+from laglab.link.importing import How, read_link, read_table
+from laglab.link.link_table import FittedLink, link_toml
+from laglab.link.measured import read_measured, write_link_log
+from laglab.link.probing import ProbePlan, real_sizes
+from laglab.link.probing import echo as answer
+from laglab.link.probing import probe as measure
+from laglab.link.scenario_of import scenario_toml
+from laglab.link.told import choices_table, fit_table, print_measured
+from laglab.progress import counting
+from laglab.results.figures.saving import picture_place, save
+from laglab.results.whole import whole_file
+from laglab.results.writable import file_place
+from laglab.runs.station_side import station_config
+from laglab.scenario import load
+from laglab_control import PolarLaw, delay_margin
+from laglab_gateway import Impairments
+from laglab_protocol import (
+    ROBOT_COMPONENT,
+    ROBOT_SYSTEM,
+    STATION_COMPONENT,
+    STATION_SYSTEM,
+    Codec,
+    Listener,
+    Sender,
+    UnsignedLinkError,
+    open_endpoint,
+)
+
+app = group("The link you have: measured, imported, fitted.")
+
+UrlArgument = Annotated[
+    str,
+    typer.Argument(
+        metavar="URL", help="udpin://HOST:PORT, udpout://HOST:PORT or serial:///dev/ttyX:BAUD."
+    ),
+]
+IntervalOption = Annotated[
+    float,
+    typer.Option("--interval", min=0.001, max=10.0, metavar="S", help="From frame to frame [s]."),
+]
+ClocksOption = Annotated[
+    float | None,
+    typer.Option(
+        "--clocks-within",
+        min=0.0,
+        metavar="S",
+        help="The clocks of both machines agree within so many seconds (PTP, GPS; 0: it is one "
+        "machine). Then delays are one-way; else half of the shortest round trip is each way's.",
+    ),
+]
+
+
+def _say(text: str) -> None:
+    Console(stderr=True).print(text, highlight=False, soft_wrap=True, markup=False)
+
+
+@app.command("echo")
+def echo(
+    url: UrlArgument = "udpin://127.0.0.1:14550",
+    key: KeyOption = None,
+    unsigned: Annotated[
+        bool, typer.Option("--unsigned", help="Answer anybody who can reach the endpoint.")
+    ] = False,
+) -> None:
+    """Answer whoever measures the link.
+
+    At the robot's end, until Ctrl-C.
+    """
+    with Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, key) as codec, open_endpoint(url) as link:
+        if not (link.loopback or key or unsigned):
+            raise UnsignedLinkError(
+                f"{link.name} can be reached from outside, and without a key anybody there can "
+                "have frames sent to others: give --key FILE (laglab protocol keygen makes one), "
+                "or say --unsigned"
+            )
+        _say(f"at {link.name}: waiting for `laglab link probe`; Ctrl-C ends it")
+        answer(Listener(link, codec.receiver), codec, _say)
+
+
+@app.command("probe")
+def probe(
+    url: UrlArgument = "udpout://127.0.0.1:14550",
+    out: Annotated[
+        Path, typer.Option("--out", metavar="FILE", help="What happened to every frame.")
+    ] = Path("link.csv"),
+    duration: Annotated[
+        float, typer.Option(min=0.05, max=86400.0, help="How long it is measured [s].")
+    ] = 10.0,
+    interval: IntervalOption = 0.01,
+    wait: Annotated[
+        float, typer.Option(min=0.1, max=3600.0, help="So long somebody must answer [s].")
+    ] = 3.0,
+    clocks_within: ClocksOption = None,
+    key: KeyOption = None,
+) -> None:
+    """Measure the link, into link.csv.
+
+    From the station's end, to `laglab link echo` or a robot that knows it: frames of the size and
+    at the rate of a run's, both ways.
+    """
+    if url.startswith("udpin"):
+        raise LinkPlaceError(
+            f"{url}: whoever measures calls: give udpout://HOST:PORT here, udpin to the echo"
+        )
+    file_place("--out", out)
+    count = max(1, round(duration / interval))
+    plan = ProbePlan(count, interval, wait, clocks_within)
+    with (
+        Codec(STATION_SYSTEM, STATION_COMPONENT, key) as codec,
+        open_endpoint(url) as link,
+        counting("frame", link.name, count) as told,
+    ):
+        measured = measure(
+            Listener(link, codec.receiver), codec, plan, lambda prober: told(prober.sent), _say
+        )
+    write_link_log(measured, out)
+    print_measured(measured, Console())
+    typer.echo(out)
+
+
+@app.command("import")
+def import_(
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE",
+            help="ping's output, irtt's JSON (.gz), a mahimahi trace, a table of netem's, a "
+            "robot.tlog, a pcap.",
+        ),
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="FILE", help="link.csv; of a table, link.toml."),
+    ] = None,
+    interval: Annotated[
+        float | None,
+        typer.Option(
+            "--interval",
+            min=0.001,
+            max=10.0,
+            metavar="S",
+            help="Resample to ticks of so long [s]; else each measurement is a tick.",
+        ),
+    ] = None,
+    back: Annotated[
+        Path | None,
+        typer.Option(
+            "--back", metavar="FILE", help="Of a mahimahi trace: the measurements' direction."
+        ),
+    ] = None,
+    clocks_within: ClocksOption = None,
+    mean: Annotated[
+        float | None, typer.Option("--mean", min=0.0, metavar="S", help="Of a netem table [s].")
+    ] = None,
+    spread: Annotated[
+        float | None, typer.Option("--spread", min=0.0, metavar="S", help="Of a netem table [s].")
+    ] = None,
+) -> None:
+    """Make link.csv of what others measured.
+
+    FILE is known by what is in it.
+    """
+    table = read_table(file, mean, spread)
+    out = out or Path("link.csv" if table is None else "link.toml")
+    file_place("--out", out)
+    if table is not None:
+        with whole_file(out) as written:
+            late = Impairments(extra_delay=table)
+            written.write(link_toml(FittedLink(0, 0, late, late)).encode())
+    else:
+        sizes = real_sizes(Sender(ROBOT_SYSTEM, ROBOT_COMPONENT))
+        measured = read_link(file, How(sizes, interval, clocks_within, back))
+        write_link_log(measured, out)
+        print_measured(measured, Console())
+    typer.echo(out)
+
+
+@app.command("fit")
+def fit(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A link.csv.")] = Path("link.csv"),
+    out: Annotated[
+        Path, typer.Option("--out", metavar="FILE", help="The link as a scenario file.")
+    ] = Path("link.toml"),
+    scenario: Annotated[
+        str,
+        typer.Option(
+            "--scenario", metavar="NAME", help="What is to run on that link: the file holds it all."
+        ),
+    ] = "lab",
+    interval: IntervalOption = 0.01,
+    n: Annotated[
+        int, typer.Option("-n", min=0, help="The fixed delay that a run's link.csv leaves out.")
+    ] = 0,
+    m: Annotated[int, typer.Option("-m", min=0, help="The same of measurements.")] = 0,
+    late: Annotated[
+        float,
+        typer.Option(
+            min=0.0, max=0.5, help="The share of frames that may come too late to be played out."
+        ),
+    ] = 0.01,
+    figure: Annotated[
+        Path | None,
+        typer.Option("--figure", metavar="FILE", help="A picture: PNG, PDF, SVG and others."),
+    ] = None,
+    width: WidthOption = "two",
+) -> None:
+    """Fit a [link] table to link.csv, suggest bounds.
+
+    How well it does is told; so is what each bound of a play-out would cost.
+    """
+    if figure is not None:
+        require(DRAWING)
+        picture_place(figure)
+    file_place("--out", out)
+    on = load(scenario)
+    found = fit_link(read_measured(file, interval, (n, m)), late)
+    with whole_file(out) as written:
+        written.write(scenario_toml(on, found.link).encode())
+    console = Console()
+    console.print(fit_table(found))
+    law = station_config(on).law
+    margin = delay_margin(law, interval) if isinstance(law, PolarLaw) else None
+    console.print(choices_table(found, margin))
+    for line in suggestions(found):
+        console.print(line, highlight=False, markup=False)
+    typer.echo(out)
+    if figure is not None:
+        save(draw_fit(found, width), figure)
+        typer.echo(figure)

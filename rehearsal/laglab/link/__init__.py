@@ -1,0 +1,1 @@
+"""The link you have: measured, imported, fitted; what a run then replays or rehearses on."""

@@ -1,0 +1,33 @@
+"""What to take from a fit, in sentences."""
+
+from collections.abc import Iterator
+
+from laglab.link.fitting import Fit
+
+FAR = 0.1
+"""Kolmogorov and Smirnov's distance of a fit that is none."""
+
+
+def suggestions(fit: Fit) -> Iterator[str]:
+    """n and m without play-out, bounds with it, and how to rehearse on what was measured."""
+    yield (
+        "* suggested; to the margin: ticks left of the delay margins, on the way to the goal and "
+        "at it, that the law has where the station does not predict."
+    )
+    n, m = fit.usual
+    yield f"Without play-out: n = {n}, m = {m}, what half of the frames take at most."
+    bounds, (late_n, late_m) = fit.bounds.bounds, fit.bounds.late
+    playout = f"{{ command = {bounds.command}, measurement = {bounds.measurement} }}"
+    yield (
+        f"With play-out: link.playout = {playout}: {100 * late_n:.2g} % of the commands and "
+        f"{100 * late_m:.2g} % of the measurements that come are then too late."
+    )
+    if max(fit.distances) > FAR:
+        yield (
+            f"The fit is a poor one: its delays are {max(fit.distances):.2g} from those measured, "
+            "which come in an order that no such link has: rather replay them."
+        )
+    yield (
+        "Rehearse on the fitted link: laglab run FILE.toml; on the very frames: "
+        "laglab run SCENARIO -n 0 -m 0 --timeline FILE.csv."
+    )

@@ -1,0 +1,62 @@
+"""What a file is, by what is in it."""
+
+import gzip
+from pathlib import Path
+
+from laglab.link.errors import LinkFileError
+from laglab.link.importing.conversations import read_capture, read_log
+from laglab.link.importing.how import How
+from laglab.link.importing.irtt import read_irtt
+from laglab.link.importing.mahimahi import is_trace, read_mahimahi
+from laglab.link.importing.ping import is_ping, read_ping
+from laglab.link.importing.tables import numbers_of
+from laglab.link.measured import MeasuredLink
+from laglab.link.resampling import resampled
+from laglab_gateway import LinkRow
+
+GZIP = b"\x1f\x8b"
+CAPTURES = tuple(
+    bytes.fromhex(magic) for magic in ("a1b2c3d4", "d4c3b2a1", "a1b23c4d", "4d3cb2a1", "0a0d0d0a")
+)
+"""pcap in both orders, with micro- or nanoseconds; pcapng."""
+FRAME_START, FRAME_AT = 0xFD, 8
+HEADING = ",".join(LinkRow._fields)
+
+
+def read_link(path: Path, how: How) -> MeasuredLink:
+    """What the file tells of a link, in ticks of `how.interval`, or one a measurement.
+
+    Raises LinkFileError: nothing is known in it, or what it is cannot be read.
+    """
+    measured = _read(path, how)
+    return measured if how.interval is None else resampled(measured, how.interval)
+
+
+def _read(path: Path, how: How) -> MeasuredLink:
+    try:
+        data = path.read_bytes()
+        if data.startswith(GZIP):
+            data = gzip.decompress(data)
+    except (OSError, EOFError) as error:
+        raise LinkFileError(f"{path} cannot be read: {error}") from error
+    if data.startswith(CAPTURES):
+        return read_capture(path, how)
+    if len(data) > FRAME_AT and data[FRAME_AT] == FRAME_START:
+        return read_log(path, how)
+    if data.lstrip().startswith(b"{"):
+        return read_irtt(data, how, str(path))
+    return _read_text(data.decode("utf-8", errors="replace"), path, how)
+
+
+def _read_text(text: str, path: Path, how: How) -> MeasuredLink:
+    if text.startswith(HEADING):
+        raise LinkFileError(f"{path} is a link.csv already: give it to `laglab link fit`")
+    numbers = numbers_of(text)
+    if numbers and is_trace(numbers):
+        return read_mahimahi(numbers, how)
+    if is_ping(text):
+        return read_ping(text, how)
+    raise LinkFileError(
+        f"{path}: none of what is known here: ping's output, irtt's JSON, a mahimahi trace, a "
+        "table of netem's, a telemetry log, a capture"
+    )

@@ -1,0 +1,48 @@
+"""netem's tables: how delays are distributed, as `tc qdisc … netem delay … distribution` has it."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from laglab.link.errors import LinkFileError
+from laglab_gateway import ExtraDelay
+
+SCALE = 8192
+"""In a table, a standard deviation."""
+QUANTILES = 65
+
+
+def numbers_of(text: str) -> list[int] | None:
+    """What stands in it besides comments, if it is nothing but whole numbers."""
+    words = [word for line in text.splitlines() for word in line.split("#")[0].split()]
+    try:
+        return [int(word) for word in words] or None
+    except ValueError:
+        return None
+
+
+def is_table(numbers: Sequence[int]) -> bool:
+    """Whether these may be one: a table rises, and has delays below the mean."""
+    return len(numbers) > 1 and numbers[0] < 0 <= numbers[-1] and list(numbers) == sorted(numbers)
+
+
+def read_table(path: Path, mean: float | None, spread: float | None) -> ExtraDelay | None:
+    """The distribution that netem draws from, told these [s]; None when the file is no table.
+
+    Raises LinkFileError.
+    """
+    try:
+        numbers = numbers_of(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    if numbers is None or not is_table(numbers):
+        return None
+    if mean is None or spread is None:
+        raise LinkFileError(
+            f"{path} is a table of netem's: say --mean and --spread too, as you tell netem after "
+            "`delay`"
+        )
+    shares = np.linspace(0.0, 1.0, QUANTILES)
+    delays = mean + spread * np.quantile(np.array(numbers) / SCALE, shares)
+    return ExtraDelay("table", quantiles=tuple(np.round(np.maximum(delays, 0.0), 7).tolist()))

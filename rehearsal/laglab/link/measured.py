@@ -1,0 +1,123 @@
+"""What was measured of a link, and the link.csv that makes it happen again."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from laglab.link.errors import LinkFileError
+from laglab.results.whole import whole_file
+from laglab_gateway import LinkRow, TimelineError, read_link_log
+
+if TYPE_CHECKING:
+    from laglab_gateway import Direction
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+DELIVERED, LOST = "delivered", "lost"
+CAME = (DELIVERED, "late")
+"""By the link: what was too late to be played out came all the same."""
+DIRECTIONS: tuple[Direction, Direction] = ("command", "measurement")
+
+
+@dataclass(frozen=True)
+class Flow:
+    """One direction: its frames in the order in which they were sent, one a tick."""
+
+    sent: Array
+    """[s] Since the first of them."""
+    delay: Array
+    """[s] From sending to arrival; NaN: it never came."""
+    size: int
+    """[byte] Of a frame, or of a datagram of several."""
+
+    @property
+    def lost(self) -> Flags:
+        """Which of them never came."""
+        return np.isnan(self.delay)
+
+    @property
+    def delivered(self) -> Array:
+        """The delays of those that came [s]."""
+        return self.delay[~self.lost]
+
+
+@dataclass(frozen=True)
+class MeasuredLink:
+    """Both directions of a link, a frame a tick, and what is to be said of the figures."""
+
+    command: Flow
+    measurement: Flow
+    interval: float
+    """[s] From tick to tick."""
+    notes: tuple[str, ...] = ()
+
+    @property
+    def flows(self) -> tuple[tuple[Direction, Flow], ...]:
+        """By direction, commands first."""
+        return ("command", self.command), ("measurement", self.measurement)
+
+
+def bursts(lost: Flags) -> list[int]:
+    """How many frames were lost, each time that some were lost one after the other."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], lost, [False]])))
+    return [int(length) for length in edges[1::2] - edges[::2]]
+
+
+def rows_of(measured: MeasuredLink) -> Iterator[LinkRow]:
+    """As a run records them: by tick. The delay is all of it, so they are for n = m = 0."""
+    flows = measured.flows
+    for tick in range(max(len(flow.delay) for _, flow in flows)):
+        for direction, flow in flows:
+            if tick < len(flow.delay):
+                lost = bool(np.isnan(flow.delay[tick]))
+                extra = 0.0 if lost else round(float(flow.delay[tick]), 7)
+                yield LinkRow(direction, tick, 0, 0, flow.size, LOST if lost else DELIVERED, extra)
+
+
+def write_link_log(measured: MeasuredLink, path: Path) -> None:
+    """Write `path`, whole or not at all. Raises ResultsError."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(LinkRow._fields)
+    writer.writerows(rows_of(measured))
+    with whole_file(path) as file:
+        file.write(text.getvalue().encode())
+
+
+def read_measured(path: Path, interval: float, fixed: tuple[int, int] = (0, 0)) -> MeasuredLink:
+    """A link.csv, of a measurement or of a run, a tick every `interval` [s].
+
+    `fixed` are the delays [ticks] that it leaves out, command and measurement: a run's n and m. Of
+    several frames or copies in one tick the first that came counts. Raises LinkFileError.
+    """
+    try:
+        command, measurement = (
+            _flow(read_link_log(path, name), interval, delay)
+            for name, delay in zip(DIRECTIONS, fixed, strict=True)
+        )
+    except TimelineError as error:
+        raise LinkFileError(str(error)) from error
+    if not (len(command.delay) or len(measurement.delay)):
+        raise LinkFileError(f"{path}: no frames in it: an ideal link leaves no trace")
+    return MeasuredLink(command, measurement, interval)
+
+
+def _flow(rows: list[LinkRow], interval: float, fixed: int) -> Flow:
+    if not rows:
+        return Flow(np.empty(0), np.empty(0), 0)
+    first = rows[0].tick
+    delay = np.full(max(row.tick for row in rows) - first + 1, np.nan)
+    for row in reversed(rows):
+        if row.fate in CAME and row.tick >= first:
+            delay[row.tick - first] = row.extra + fixed * interval
+    sent = interval * np.arange(len(delay), dtype=np.float64)
+    return Flow(sent, delay, max(row.size for row in rows))

@@ -1,0 +1,14 @@
+"""A scenario on the link that was fitted."""
+
+import tomlkit
+
+from laglab.link.link_table import FittedLink, link_table
+from laglab.scenario import Scenario
+
+
+def scenario_toml(scenario: Scenario, link: FittedLink) -> str:
+    """The scenario as a file, its `[link]` this one; it is called as the file is."""
+    document = tomlkit.parse(scenario.to_toml())
+    del document["name"]
+    document["link"] = link_table(link)
+    return tomlkit.dumps(document)

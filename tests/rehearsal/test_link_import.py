@@ -1,0 +1,288 @@
+"""What others measured, as link.csv; each file in the form in which its program writes it."""
+
+import gzip
+import json
+import subprocess
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import dpkt
+import numpy as np
+import pytest
+
+from laglab.command import main
+from laglab.link.errors import LinkFileError
+from laglab.link.importing import How, read_link, read_table
+from laglab.link.importing.mahimahi import waited
+from laglab.link.measured import MeasuredLink, read_measured
+from laglab.link.probing import Sizes
+from laglab.scenario import load
+from laglab_protocol import Command, Measurement, Message, Sender, Tick, tlog_record
+
+Laglab = Callable[..., subprocess.CompletedProcess[str]]
+HOW = How(Sizes(121, 75))
+
+LINUX = """\
+PING 192.0.2.7 (192.0.2.7) 56(84) bytes of data.
+[1700000000.000100] 64 bytes from 192.0.2.7: icmp_seq=1 ttl=57 time=10.0 ms
+[1700000000.200100] 64 bytes from 192.0.2.7: icmp_seq=2 ttl=57 time=14.0 ms
+[1700000000.400000] no answer yet for icmp_seq=3
+[1700000000.600100] 64 bytes from 192.0.2.7: icmp_seq=4 ttl=57 time=12 ms
+[1700000000.600200] 64 bytes from 192.0.2.7: icmp_seq=4 ttl=57 time=13 ms (DUP!)
+
+--- 192.0.2.7 ping statistics ---
+5 packets transmitted, 3 received, +1 duplicates, 40% packet loss, time 803ms
+rtt min/avg/max/mdev = 10.0/12.0/14.0/1.6 ms
+"""
+MACOS = """\
+PING example.net (192.0.2.7): 56 data bytes
+64 bytes from 192.0.2.7: icmp_seq=0 ttl=57 time=10.000 ms
+64 bytes from 192.0.2.7: icmp_seq=1 ttl=57 time=14.000 ms
+Request timeout for icmp_seq 2
+64 bytes from 192.0.2.7: icmp_seq=3 ttl=57 time=12.000 ms
+
+--- example.net ping statistics ---
+5 packets transmitted, 3 packets received, 40.0% packet loss
+"""
+BUSYBOX = """\
+64 bytes from 192.0.2.7: seq=0 ttl=57 time=10.000 ms
+64 bytes from 192.0.2.7: seq=1 ttl=57 time=14.000 ms
+64 bytes from 192.0.2.7: seq=3 ttl=57 time=12.000 ms
+5 packets transmitted, 3 packets received, 40% packet loss
+"""
+WINDOWS = """\
+Pinging 192.0.2.7 with 32 bytes of data:
+Reply from 192.0.2.7: bytes=32 time=10ms TTL=57
+Reply from 192.0.2.7: bytes=32 time=14ms TTL=57
+Request timed out.
+Reply from 192.0.2.7: bytes=32 time=12ms TTL=57
+Request timed out.
+"""
+
+
+def imported(tmp_path: Path, data: str | bytes, how: How = HOW) -> MeasuredLink:
+    path = tmp_path / "measured"
+    path.write_bytes(data.encode() if isinstance(data, str) else data)
+    return read_link(path, how)
+
+
+@pytest.mark.parametrize(
+    ("printed", "interval"), [(LINUX, 0.2), (MACOS, 1.0), (BUSYBOX, 1.0), (WINDOWS, 1.0)]
+)
+def test_ping_is_halved(tmp_path: Path, printed: str, interval: float) -> None:
+    measured = imported(tmp_path, printed)
+    np.testing.assert_allclose(measured.command.delay, [0.005, 0.007, np.nan, 0.006, np.nan])
+    np.testing.assert_allclose(measured.measurement.delay, [0.005, 0.007, 0.007, 0.006, 0.006])
+    assert measured.interval == pytest.approx(interval, abs=0.01)
+    assert "half of a round trip" in measured.notes[0]
+    assert "counts as a lost command" in measured.notes[1]
+    assert (measured.command.size, measured.measurement.size) == (121, 75)
+
+
+def test_a_long_ping_s_numbers_go_on_where_they_wrap(tmp_path: Path) -> None:
+    lines = (f"64 bytes from x: icmp_seq={k % 65536} ttl=5 time=1 ms" for k in range(1, 70_000, 2))
+    assert len(imported(tmp_path, "\n".join(lines)).command.delay) == 69_999
+
+
+def test_resampling_gives_a_frame_a_tick(tmp_path: Path) -> None:
+    measured = imported(tmp_path, LINUX, HOW._replace(interval=0.05))
+    delay = measured.command.delay
+    assert len(delay) == 20
+    np.testing.assert_allclose(delay[:5], [0.005, 0.0055, 0.006, 0.0065, 0.007])
+    np.testing.assert_array_equal(np.flatnonzero(np.isnan(delay)), [7, 8, 9, 10, *range(15, 20)])
+    assert "Measured every 0.2 s, a tick is 0.05 s" in measured.notes[-1]
+
+
+def trip(number: int, lost: str, ahead_ns: int, delays: tuple[int, int]) -> dict[str, Any]:
+    """As irtt writes it, by clocks of which the server's is ahead."""
+    up, down = delays
+    there = {"delay": {"send": up + ahead_ns, "receive": down - ahead_ns, "rtt": up + down}}
+    times = {"send": {"wall": 17 * 10**17, "monotonic": number * 20_000_000}}
+    return {
+        "seqno": number,
+        "lost": lost,
+        "timestamps": {"client": times},
+        **(there if lost == "false" else {"delay": {}}),
+    }
+
+
+@pytest.mark.parametrize("packed", [False, True])
+def test_irtt_is_one_way_by_two_clocks(tmp_path: Path, packed: bool) -> None:
+    fates = ["false", "true_up", "false", "true_down", "true", "false"]
+    ms = 1_000_000
+    delays = [(5 * ms, 7 * ms), (0, 0), (9 * ms, 5 * ms), (0, 0), (0, 0), (6 * ms, 8 * ms)]
+    # The fastest took 5 ms each way: half of the shortest round trip is what it is.
+    trips = [trip(k, fates[k], 10**10, delays[k]) for k in range(6)]
+    text = json.dumps({"version": {}, "round_trips": trips}).encode()
+    measured = imported(tmp_path, gzip.compress(text) if packed else text)
+    assert measured.interval == pytest.approx(0.02)
+    np.testing.assert_allclose(
+        measured.command.delay, [0.005, np.nan, 0.009, 0.009, np.nan, 0.006], atol=1e-9
+    )
+    np.testing.assert_allclose(
+        measured.measurement.delay, [0.007, 0.007, 0.005, np.nan, 0.005, 0.008], atol=1e-9
+    )
+    assert "half of the shortest round trip, 10 ms" in measured.notes[0]
+    assert "which way it was lost is not known" in measured.notes[1]
+
+
+def test_irtt_without_the_servers_times_is_halved(tmp_path: Path) -> None:
+    trips = [trip(k, "false", 0, (4_000_000, 6_000_000)) for k in range(3)]
+    for each in trips:
+        del each["delay"]["send"], each["delay"]["receive"]
+    measured = imported(tmp_path, json.dumps({"round_trips": trips}))
+    for _, flow in measured.flows:
+        np.testing.assert_allclose(flow.delay, 0.005)
+
+
+def test_a_trace_of_mahimahis_lets_frames_wait_for_their_turn(tmp_path: Path) -> None:
+    # Every 30 ms one opportunity: three frames of 121 bytes go together.
+    measured = imported(tmp_path, "30\n")
+    np.testing.assert_allclose(measured.command.delay[1:7], [0.02, 0.01, 0.0] * 2, atol=1e-9)
+    assert measured.command.sent[-1] > 9.9
+    assert "how long they then travel comes on top" in measured.notes[0]
+
+
+def test_frames_that_do_not_fit_wait_for_the_next_opportunity() -> None:
+    # Of two frames of 1000 bytes the second's second half goes with the next one.
+    crossed = waited([10, 20], np.array([0.0, 0.0, 0.0]), 1000)
+    np.testing.assert_allclose(crossed, [0.01, 0.02, 0.02])
+    # What nobody uses is lost; then the trace begins again.
+    np.testing.assert_allclose(waited([10, 20], np.array([0.015, 0.021]), 100), [0.02, 0.03])
+
+
+def test_each_direction_may_have_a_trace_of_its_own(tmp_path: Path) -> None:
+    (tmp_path / "down").write_text("10\n")
+    measured = imported(tmp_path, "20\n40\n", HOW._replace(back=tmp_path / "down"))
+    assert measured.command.delay[1] == pytest.approx(0.01)
+    assert np.abs(measured.measurement.delay[1:]).max() < 1e-9
+
+
+@pytest.mark.parametrize("text", [None, "soon", "3\n2\n"])
+def test_a_bad_trace_for_the_way_back_is_named(tmp_path: Path, text: str | None) -> None:
+    back = tmp_path / "down"
+    if text is not None:
+        back.write_text(text)
+    with pytest.raises(LinkFileError, match=r"--back .*down: no mahimahi trace"):
+        imported(tmp_path, "20\n", HOW._replace(back=back))
+
+
+SAID: Sequence[tuple[float, int, tuple[Message, ...]]] = [
+    (0.000, 1, (Measurement(0.0, 0.0, 0.0, 0.0, 0.0, 0, -1), Tick(0, 1))),
+    (0.008, 200, (Command(0.0, 0.0, 0, 1, 1, 0),)),
+    (0.010, 1, (Tick(1, 0),)),
+    (0.020, 1, (Tick(2, 0),)),
+    (0.025, 200, (Command(0.0, 0.0, 1, 1, 1, 0),)),
+    (0.030, 1, (Tick(3, 0),)),
+    (0.034, 200, (Command(0.0, 0.0, 3, 1, 1, 0),)),
+    (0.040, 1, (Tick(4, 0),)),
+]
+"""What is overheard at the robot: when [s], who says it, in one datagram; tick 2 is not answered,
+and after tick 3 the station is gone."""
+
+
+def checked(measured: MeasuredLink) -> None:
+    np.testing.assert_allclose(measured.command.delay, [0.004, 0.0075, np.nan, 0.002], atol=1e-7)
+    np.testing.assert_allclose(measured.command.sent, [0.0, 0.01, 0.02, 0.03], atol=1e-7)
+    assert measured.interval == pytest.approx(0.01)
+    assert "the station's thinking included" in measured.notes[0]
+
+
+def test_a_telemetry_log_tells_how_long_answers_took(tmp_path: Path) -> None:
+    senders = {number: Sender(number, 1) for number in (1, 200)}
+    checked(
+        imported(
+            tmp_path,
+            b"".join(
+                tlog_record(round(1.7e15 + 1e6 * time), senders[who].frame(message))
+                for time, who, said in SAID
+                for message in said
+            ),
+        )
+    )
+
+
+@pytest.mark.parametrize("kind", ["pcap", "pcapng"])
+def test_a_capture_tells_it_too(tmp_path: Path, kind: str) -> None:
+    senders = {number: Sender(number, 1) for number in (1, 200)}
+    writer = dpkt.pcap.Writer if kind == "pcap" else dpkt.pcapng.Writer
+    with (tmp_path / "captured").open("wb") as file:
+        capture = writer(file)
+        for time, who, said in SAID:
+            payload = b"".join(map(senders[who].frame, said))
+            udp = dpkt.udp.UDP(sport=1, dport=2, ulen=8 + len(payload), data=payload)
+            ip = dpkt.ip.IP(src=b"\n\0\0\1", dst=b"\n\0\0\2", p=17, len=28 + len(payload), data=udp)
+            capture.writepkt(bytes(dpkt.ethernet.Ethernet(data=ip)), ts=1.7e9 + time)
+        capture.writepkt(b"noise", ts=1.7e9)
+    checked(read_link(tmp_path / "captured", HOW))
+
+
+def test_the_log_of_a_run_is_known_by_ticks(rehearsed: Callable[..., Any], tmp_path: Path) -> None:
+    rehearsed("fig6", "--duration", "0.5")
+    measured = read_link(tmp_path / "run" / "robot.tlog", HOW)
+    assert len(measured.command.delay) == 51
+    assert not measured.command.delay.any(), "a station that is asked inline answers at once"
+    assert "whole ticks" in measured.notes[-1]
+
+
+NETEM = """\
+# This is the distribution table for one of two values.
+ -8192 -8192 -8192 -8192
+  8192  8192  8192  8192
+"""
+
+
+def test_a_table_of_netems_is_a_distribution(laglab: Laglab, tmp_path: Path) -> None:
+    (tmp_path / "two.dist").write_text(NETEM)
+    result = laglab("link", "import", "two.dist", "--mean", "0.05", "--spread", "0.01")
+    assert result.returncode == 0, result.stderr
+    delay = load(str(tmp_path / "link.toml")).link.command.extra_delay
+    assert delay is not None
+    rng = np.random.default_rng(1)
+    drawn = np.array([delay.draw(rng) for _ in range(4000)])
+    assert np.mean(np.isclose(drawn, 0.04)) == pytest.approx(0.5, abs=0.1)
+    assert np.mean(np.isclose(drawn, 0.06)) == pytest.approx(0.5, abs=0.1)
+    assert read_table(tmp_path / "link.toml", 0.0, 0.0) is None
+
+
+def test_what_was_imported_is_read_again(laglab: Laglab, tmp_path: Path) -> None:
+    (tmp_path / "ping.txt").write_text(LINUX)
+    result = laglab("link", "import", "ping.txt", "--interval", "0.01")
+    assert result.returncode == 0, result.stderr
+    assert "half of a round trip" in " ".join(result.stdout.split())
+    again = read_measured(tmp_path / "link.csv", 0.01)
+    assert len(again.command.delay) == 100
+    assert laglab("link", "import", "link.csv").returncode == 2
+
+
+BAD = {
+    "nothing": (None, "nothing cannot be read"),
+    "empty": (b"", "none of what is known here"),
+    "prose": (b"it rained\n", "none of what is known here"),
+    "numbers": (b"5\n3\n", "none of what is known here"),
+    "other.json": (b'{"a": 1}', "not as irtt writes it"),
+    "cut.json": (b'{"round_trips": [', "not as irtt writes it"),
+    "none.json": (b'{"round_trips": []}', "irtt"),
+    "cut.gz": (gzip.compress(b"{}" * 99)[:-12], "cannot be read"),
+    "cut.pcap": (bytes.fromhex("d4c3b2a1") + b"\0" * 9, "not a readable capture"),
+    "empty.pcap": (bytes.fromhex("d4c3b2a102000400") + b"\0" * 8 + b"\0\0\4\0\1\0\0\0", "no run"),
+    "other.tlog": (b"\0" * 8 + b"\xfd" + b"\0" * 99, "no frame of the dialect"),
+    "two.dist": (NETEM.encode(), "say --mean and --spread"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_what_tells_nothing_is_one_line(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data, said = BAD[name]
+    if data is not None:
+        (tmp_path / name).write_bytes(data)
+    with pytest.raises(SystemExit) as ended:
+        main(["link", "import", str(tmp_path / name), "--out", str(tmp_path / "link.csv")])
+    error = capsys.readouterr().err
+    assert ended.value.code == 2
+    assert said in error
+    assert len(error.splitlines()) == 1
+    assert not (tmp_path / "link.csv").exists()
