@@ -6,7 +6,6 @@ from laglab_gateway.drive import Safety
 from laglab_gateway.errors import (
     ConfigError,
     GatewayError,
-    PlantError,
     PlantSilentError,
     StationSilentError,
     TimelineError,
@@ -96,7 +95,6 @@ __all__ = [
     "Parameters",
     "Patience",
     "Plant",
-    "PlantError",
     "PlantSilentError",
     "RandomFates",
     "Reading",

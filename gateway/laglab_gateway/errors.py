@@ -41,7 +41,3 @@ class TimelineError(GatewayError):
 
 class UnplaceableError(GatewayError):
     """A robot that nobody can put elsewhere from here."""
-
-
-class PlantError(GatewayError):
-    """A plant did what none may; the message names it, and when."""

@@ -20,8 +20,8 @@ from laglab.commands import (
     fmu,
     link,
     maps,
+    new,
     plant,
-    plants,
     protocol,
     replay,
     report,
@@ -71,8 +71,9 @@ app.command("replay")(replay.replay)
 app.command("scenarios")(scenarios.scenarios)
 app.command("estimators")(estimators.estimators)
 app.command("laws")(estimators.laws)
+app.command("plants")(estimators.plants)
 app.command("check")(check.check)
-app.command("plants")(plants.plants)
+app.command("new")(new.new)
 app.command("scenario")(scenario.scenario)
 app.command("figure")(figure.figure)
 app.command("report")(report.report)

@@ -20,11 +20,12 @@ ROVER = (
     *(("gps.x", "output"), ("gps.y", "output"), ("compass", "output")),
     *(("fail_at", "parameter"), ("nan_at", "parameter"), ("discard_at", "parameter")),
     *(("wheel.radius", "parameter"), ("wheel.base", "parameter")),
-    *(("crash_at", "parameter"), ("dice", "parameter")),
+    *(("crash_at", "parameter"), ("dice", "parameter"), ("wall_at", "parameter")),
     *(("der(posX)", "local"), ("der(posY)", "local"), ("der(psi)", "local")),
 )
 """The rover's variables, in the order of their value references."""
 STARTS = {
+    "wall_at": 1e9,
     "crash_at": 1e9,
     "wheel.radius": 0.05,
     "wheel.base": 0.6,
@@ -79,7 +80,7 @@ def rover_description(interfaces: Sequence[str]) -> str:
     outputs = [i + 1 for i, (_, causality) in enumerate(ROVER) if causality == "output"]
     derivatives = [i + 1 for i, (name, _) in enumerate(ROVER) if name.startswith("der(")]
     return f"""<?xml version="1.0" encoding="UTF-8"?>
-<fmiModelDescription fmiVersion="2.0" modelName="Rover" guid="rover" numberOfEventIndicators="0">
+<fmiModelDescription fmiVersion="2.0" modelName="Rover" guid="rover" numberOfEventIndicators="1">
 {"".join(interfaces)}
 <DefaultExperiment stepSize="0.005"/>
 <ModelVariables>{"".join(lines)}</ModelVariables>

@@ -81,6 +81,11 @@ def test_model_exchange_meets_its_time_events(version: int) -> None:
         assert one == pytest.approx(other, abs=1e-4)
 
 
+def test_model_exchange_meets_its_state_events(fmus: Path) -> None:
+    wiring = Wiring(WHEELS, POSE, START, {"wall_at": 0.3})
+    assert driven(fmus / "rover-me.fmu", wiring, (10.0, 10.0)) == pytest.approx([0.3, 0.0, 0.0])
+
+
 def test_arrays_of_fmi_3(fmus: Path) -> None:
     assert driven(fmus / "Barrow.fmu", BARROW, (0.5, 0.3)) == pytest.approx(euler(0.5, 0.3, TS))
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from laglab import load, run
-from laglab.errors import RefusedError, ScenarioError
+from laglab.errors import RefusedError, ScenarioError, StudyError
 from laglab.runs.plant import open_plant
 from laglab.studies.many import why_one_by_one
 from laglab.studies.sweep.loading import load_study
@@ -78,6 +78,12 @@ def test_a_study_of_a_foreign_robot_is_made_one_by_one(tmp_path: Path, fmus: Pat
         table = swept(str(path), workers, None, False, 100).table
     assert table.num_rows == 4
     assert table["rms_x"].null_count == 0
+
+
+def test_a_robot_that_cannot_be_had_is_told_before_a_study_begins(tmp_path: Path) -> None:
+    path = study(tmp_path, f'fmu = "none.fmu"{ROVER_MAP}')
+    with pytest.raises(StudyError, match=r"own: with .*none.fmu: there is no such file"):
+        planned(load_study(str(path)))
 
 
 def test_another_fmu_of_that_name_is_another_study(tmp_path: Path, library: Path) -> None:

@@ -69,7 +69,11 @@ def run(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> Callable[..., Ran]
 
 @pytest.mark.parametrize(
     ("text", "ways"),
-    [(ROVER, ("inline", "udp", "serial")), (BARROW, ("inline", "udp")), (TRAY, ("inline", "udp"))],
+    [
+        (ROVER, ("inline", "udp", "serial")),
+        pytest.param(BARROW, ("inline", "udp"), marks=pytest.mark.slow),
+        pytest.param(TRAY, ("inline", "udp"), marks=pytest.mark.slow),
+    ],
 )
 def test_the_same_bytes_by_every_way(
     written: Scenarios, run: Callable[..., Ran], tmp_path: Path, text: str, ways: tuple[str, ...]

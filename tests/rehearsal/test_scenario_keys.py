@@ -83,7 +83,7 @@ FOREIGN: Keys = {
     | st.fixed_dictionaries(dict.fromkeys(OUTPUTS, THEIRS)),
 }
 OF_FOREIGN: Keys = {
-    "start": table(START),
+    "start": table(START).filter(bool),
     "parameters": st.dictionaries(
         THEIRS, st.integers(-9, 9) | HERE | st.booleans() | TEXT | st.lists(HERE), max_size=3
     ),
@@ -119,6 +119,7 @@ ESTIMATOR: Keys = {
     "initial_covariance": st.floats(0, 1.0),
     "initial_estimate": POSE | st.sampled_from(["start", "drawn"]),
     "guard": st.booleans(),
+    "options": st.dictionaries(THEIRS, HERE | TEXT, max_size=2),
 }
 LAW: Keys = dict.fromkeys(
     (
@@ -223,7 +224,8 @@ def test_what_is_written_reads_back_to_the_same(folder: Path, fields: dict[str, 
 @settings(max_examples=50, deadline=None)
 @given(table(TOP))
 def test_what_a_scenario_allows_both_sides_take(folder: Path, fields: dict[str, Any]) -> None:
-    scenario = at(folder, fields | {"law": {**fields.get("law", {}), "options": {}}})
+    told = {table: {**fields.get(table, {}), "options": {}} for table in ("estimator", "law")}
+    scenario = at(folder, fields | told)
     if scenario.law.kind in LAWS:
         station_config(scenario)
     gateway_config(scenario)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from functools import partial
 from types import TracebackType
 from typing import Any, Self
@@ -48,7 +48,7 @@ class ForeignRobot:
         self._file, self._wiring, self._sample_time = file, wiring, sample_time
         self._substeps = substeps(file, sample_time)
         self.log = Log()
-        self._tick = 0
+        self._tick, self._runs = 0, False
         with ExitStack() as stack:
             self._fmu: Any = stack.enter_context(instance(file, self.log))
             elements = output_elements(file, wiring.outputs)
@@ -69,6 +69,7 @@ class ForeignRobot:
             if self._file.interface() == "model exchange":
                 description = self._file.description
                 self._integrator = Integrator(self._fmu, description, self._sample_time)
+            self._runs = True
             self.outputs = self._read()
         except (FMICallException, CallError) as error:
             raise self._failed(error) from error
@@ -123,6 +124,7 @@ class ForeignRobot:
         self._begin(start)
 
     def _failed(self, error: Exception) -> CallError:
+        self._runs = False
         if isinstance(error, FMICallException):
             if error.status == FATAL:  # no other call is allowed any more
                 self._fmu.freeInstance = self._fmu.freeLibrary
@@ -136,7 +138,11 @@ class ForeignRobot:
         return CallError(f"{self._file.path.name}: tick {self._tick}: {said}")
 
     def close(self) -> None:
-        """Frees the instance, removes the extracted files. Twice does no harm."""
+        """Ends and frees the instance, removes the extracted files. Twice does no harm."""
+        if self._runs:
+            self._runs = False
+            with suppress(FMICallException):
+                self._fmu.terminate()
         self._stack.close()
 
     def __enter__(self) -> Self:

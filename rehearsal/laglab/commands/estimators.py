@@ -1,9 +1,10 @@
-"""``laglab estimators`` and ``laglab laws``."""
+"""``laglab estimators``, ``laglab laws`` and ``laglab plants``."""
 
 from collections.abc import Mapping
 
 from rich.console import Console
 
+from laglab.scenario.tables.plant import SHIPPED
 from laglab.tables import plain_table
 from laglab_control import ESTIMATORS, LAWS, installed_plugins
 from laglab_control.plugins import Group
@@ -17,6 +18,11 @@ def estimators() -> None:
 def laws() -> None:
     """List the control laws, shipped and installed."""
     _list("laglab.laws", LAWS)
+
+
+def plants() -> None:
+    """List the robots, shipped and installed."""
+    _list("laglab.plants", SHIPPED)
 
 
 def _list(group: Group, shipped: Mapping[str, str]) -> None:

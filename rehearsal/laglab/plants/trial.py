@@ -1,8 +1,7 @@
-"""A plant, driven twice in a process of its own: whatever it does there, we are still here."""
+"""A plant, driven twice, each time in a process of its own: whatever it does, we are still here."""
 
 import math
 import pickle
-from collections.abc import Sequence
 from queue import Empty, Queue
 from time import perf_counter
 from typing import NamedTuple
@@ -12,10 +11,10 @@ from msgspec import Struct
 from laglab.errors import LaglabError
 from laglab.runs.child import Inbox, Tell, started
 from laglab.runs.errors import SIDE_ERRORS
-from laglab.runs.plant import OpenPlant, open_plant
+from laglab.runs.plant import open_plant
 from laglab.runs.reports import Computed, Failed
 from laglab.scenario import Scenario
-from laglab_gateway import Reading
+from laglab_gateway import Plant, Reading
 
 V, OMEGA = 0.3, 0.5
 """[m/s, rad/s] It drives straight ahead for a second, and in a curve for another."""
@@ -38,6 +37,17 @@ class TrialOrder(Struct, frozen=True):
 
     scenario: str
     """As TOML."""
+
+
+class Drive(NamedTuple):
+    """How a plant was driven once."""
+
+    readings: list[Reading]
+    """Straight ahead for a PHASE, then in a curve for another."""
+    seconds: float
+    """On the wall, of both."""
+    placed: bool | None
+    warnings: tuple[str, ...]
 
 
 class Trial(NamedTuple):
@@ -81,9 +91,25 @@ def _doubt(got: float, expected: float, question: str) -> str:
 
 def tried(scenario: Scenario) -> Trial:
     """The scenario's plant. Raises PlantCheckError: it fails, dies or does not come back."""
+    first, again = _in_a_child(scenario), _in_a_child(scenario)
+    middle = len(first.readings) // 2
+    before, between, after = (first.readings[k] for k in (0, middle, -1))
+    along = math.cos(before.theta), math.sin(before.theta)
+    return Trial(
+        before[:3],
+        (between.x - before.x) * along[0] + (between.y - before.y) * along[1],
+        after.theta - between.theta,
+        first.readings == again.readings,
+        first.placed,
+        2 * PHASE / first.seconds,
+        first.warnings,
+    )
+
+
+def _in_a_child(scenario: Scenario) -> Drive:
     inbox: Inbox = Queue()
     order = TrialOrder(scenario.to_toml())
-    with started("plant's", f"{__name__}:try_plant", order, inbox):
+    with started("plant's", f"{__name__}:drive", order, inbox):
         try:
             _, report = inbox.get(timeout=PATIENCE)
         except Empty:
@@ -93,56 +119,39 @@ def tried(scenario: Scenario) -> Trial:
             ) from None
     match report:
         case Computed(answer):
-            trial: Trial = pickle.loads(answer)
-            return trial
+            driven: Drive = pickle.loads(answer)
+            return driven
         case Failed(reason):
             raise PlantCheckError(reason)
         case other:
             raise PlantCheckError(f"{scenario.plant.called}: {getattr(other, 'how', other)}")
 
 
-def try_plant(order: TrialOrder, tell: Tell) -> None:
+def drive(order: TrialOrder, tell: Tell) -> None:
     """In the child."""
+    scenario = Scenario.from_toml(order.scenario)
+    ticks = max(round(PHASE / scenario.sample_time), 1)
     try:
-        tell(Computed(pickle.dumps(tried_here(Scenario.from_toml(order.scenario)))))
+        with open_plant(scenario) as opened:
+            begun = perf_counter()
+            readings = _readings(opened.plant, ticks)
+            seconds = perf_counter() - begun
+            placed = _placed(opened.plant) if opened.placeable else None
+        tell(Computed(pickle.dumps(Drive(readings, seconds, placed, opened.warnings))))
     except SIDE_ERRORS as error:
         tell(Failed(str(error), begun=True))
 
 
-def tried_here(scenario: Scenario) -> Trial:
-    """In this process. Raises what `open_plant` and the plant raise."""
-    ticks = max(round(PHASE / scenario.sample_time), 1)
-    with open_plant(scenario) as opened:
-        begun = perf_counter()
-        first = _driven(opened, ticks)
-        seconds = perf_counter() - begun
-        placed = _placed(opened) if opened.placeable else None
-    with open_plant(scenario) as again:
-        same = _driven(again, ticks) == first
-    before, between, after = first[0], first[ticks], first[-1]
-    along = math.cos(before.theta), math.sin(before.theta)
-    return Trial(
-        before[:3],
-        (between.x - before.x) * along[0] + (between.y - before.y) * along[1],
-        after.theta - between.theta,
-        same,
-        placed,
-        2 * ticks * scenario.sample_time / seconds,
-        opened.warnings,
-    )
-
-
-def _driven(opened: OpenPlant, ticks: int) -> Sequence[Reading]:
-    """Straight ahead, then in a curve."""
-    readings = [opened.plant.read()]
+def _readings(plant: Plant, ticks: int) -> list[Reading]:
+    readings = [plant.read()]
     for omega in (0.0, OMEGA):
         for _ in range(ticks):
-            opened.plant.step(V, omega)
-            readings.append(opened.plant.read())
+            plant.step(V, omega)
+            readings.append(plant.read())
     return readings
 
 
-def _placed(opened: OpenPlant) -> bool:
+def _placed(plant: Plant) -> bool:
     there = (0.25, -0.5, 0.75)
-    opened.plant.place(*there)
-    return all(abs(a - b) < 1e-6 for a, b in zip(opened.plant.read(), there, strict=False))
+    plant.place(*there)
+    return all(abs(a - b) < 1e-6 for a, b in zip(plant.read(), there, strict=False))

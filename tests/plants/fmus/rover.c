@@ -9,19 +9,22 @@
 #include "fmi2Functions.h"
 
 enum { CMD_LEFT, CMD_RIGHT, POS_X, POS_Y, PSI, X0, Y0, PSI0, GPS_X, GPS_Y, COMPASS, FAIL_AT, NAN_AT, DISCARD_AT, RADIUS,
-       BASE, CRASH_AT, DICE, DER_X, DER_Y, DER_PSI, VARIABLES };
+       BASE, CRASH_AT, DICE, WALL_AT, DER_X, DER_Y, DER_PSI, VARIABLES };
 
 static const double PART = 0.005; /* s: its own step */
 
 typedef struct {
     double value[VARIABLES], time, gain;
     unsigned noise;
+    bool stuck;
     fmi2CallbackFunctions call;
 } Rover;
 
 static void begin(Rover *rover) {
     memset(rover->value, 0, sizeof rover->value);
     rover->value[FAIL_AT] = rover->value[NAN_AT] = rover->value[DISCARD_AT] = rover->value[CRASH_AT] = 1e9;
+    rover->value[WALL_AT] = 1e9;
+    rover->stuck = false;
     rover->value[RADIUS] = 0.05;
     rover->value[BASE] = 0.6;
     rover->time = 0.0;
@@ -48,6 +51,9 @@ static void derive(Rover *rover) {
     u[DER_X] = v * cos(u[PSI]);
     u[DER_Y] = v * sin(u[PSI]);
     u[DER_PSI] = rover->gain * u[RADIUS] * (u[CMD_RIGHT] - u[CMD_LEFT]) / u[BASE];
+    if (rover->stuck) {
+        u[DER_X] = u[DER_Y] = u[DER_PSI] = 0.0;
+    }
 }
 
 static double shaken(Rover *rover) {
@@ -187,8 +193,18 @@ fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real x[], size
     return fmi2OK;
 }
 
+/* A wall, at which it sticks. */
+fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real z[], size_t n) {
+    for (size_t i = 0; i < n; i++) {
+        z[i] = ((Rover *)c)->value[WALL_AT] - ((Rover *)c)->value[POS_X];
+    }
+    return fmi2OK;
+}
+
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info) {
-    measure(c);
+    Rover *rover = c;
+    rover->stuck = rover->stuck || rover->value[POS_X] >= rover->value[WALL_AT] - 1e-9;
+    measure(rover);
     memset(info, 0, sizeof *info);
     return fmi2OK;
 }

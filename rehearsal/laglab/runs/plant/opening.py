@@ -16,7 +16,7 @@ from laglab_gateway import UnplaceableError
 def open_plant(scenario: Scenario) -> Iterator[OpenPlant]:
     """The plant of that scenario, moved by hand where it says so.
 
-    Raises: FmuError, PluginError, PlantError: it cannot be had, or does not start;
+    Raises: FmuError, PluginError: it cannot be had, or does not start;
     UnplaceableError: it is to be moved by hand, and cannot.
     """
     with _opened(scenario) as opened:

@@ -93,6 +93,12 @@ class PlantStart(Table):
     y: Annotated[Name | None, described("-", "Takes y of the start [m].")] = None
     theta: Annotated[Name | None, described("-", "Takes θ of the start [rad].")] = None
 
+    @model_validator(mode="after")
+    def _something(self) -> Self:
+        if not named(self):
+            raise ValueError("give x, y and theta, or some of them")
+        return self
+
 
 def named(table: Table | None) -> dict[str, str]:
     """Ours → theirs, in the order of the table's keys."""

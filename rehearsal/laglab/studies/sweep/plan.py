@@ -6,7 +6,10 @@ from typing import TYPE_CHECKING, NamedTuple
 from pydantic import ValidationError
 
 from laglab.errors import ScenarioError, StudyError
+from laglab.runs.errors import SIDE_ERRORS
+from laglab.runs.plant import check_plant
 from laglab.scenario.problems import first_problem
+from laglab.scenario.tables.plant import PlantTable
 from laglab.studies.sweep.cell import Cell
 from laglab.studies.sweep.study import Study
 from laglab.studies.sweep.ways import How, how, seconds
@@ -37,12 +40,25 @@ def planned(study: Study, folder: "Folder | None" = None) -> Plan:
     wherever it is, cannot be."""
     ways: Counter[How] = Counter()
     cost = 0.0
+    tried = set[tuple[PlantTable, float]]()
     for cell in study.cells():
         check(study, cell)
+        robot = cell.scenario.plant, cell.scenario.sample_time
+        if robot not in tried:
+            tried.add(robot)
+            _check_robot(study, cell)
         if folder is None or not folder.has(cell):
             ways[how(cell)] += len(cell.seeds)
             cost += seconds(cell)
     return Plan(ways, cost)
+
+
+def _check_robot(study: Study, cell: Cell) -> None:
+    """Raises StudyError: it cannot be had, or not so."""
+    try:
+        check_plant(cell.scenario)
+    except SIDE_ERRORS as error:
+        raise StudyError(f"{study.name}: with {cell.place}: {error}") from None
 
 
 def check_size(study: Study, limit: int = MOST_RUNS) -> None:
