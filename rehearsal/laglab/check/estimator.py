@@ -81,9 +81,11 @@ def _told(state: State) -> tuple[bytes, bytes]:
 
 
 def interface(subject: Subject) -> str:
-    """start, predict, correct, and a state of every tick."""
+    """start, predict, correct, a state of every tick, and what else it has."""
     record = drive(MODEL, TICKS, seed=1)
     states = _run(subject.estimator, record, _late(record, 3))
+    subject.estimator.innovation(states[-1])
+    subject.estimator.ahead(states[-1], list(record.inputs[-3:]))
     size = len(states[-1].x) if states[-1].x is not None else 0
     return f"a state of {size} components, followed over {TICKS} ticks"
 
