@@ -43,12 +43,11 @@ class StoneSoupEkf(Backdated):
 
     def __init__(self, model):
         super().__init__(model)
-        sensor = LinearGaussian(ndim_state=3, mapping=(0, 1, 2), noise_covar=model.R)
         self.predictor = ExtendedKalmanPredictor(Robot(model))
-        self.updater = ExtendedKalmanUpdater(sensor)
+        self.updater = ExtendedKalmanUpdater(LinearGaussian(3, (0, 1, 2), model.R))
 
     def forward(self, x, P, u):
-        prior = GaussianStateUpdate(np.vstack(x), P, hypothesis=None)
+        prior = GaussianStateUpdate(np.vstack(x), P, None)
         return _parts(self.predictor.predict(prior, x=tuple(x), u=tuple(u)))
 
     def corrected(self, x, P, z):
