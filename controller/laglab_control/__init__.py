@@ -19,6 +19,7 @@ from laglab_control.errors import ConfigError, ControlError, StampError
 from laglab_control.estimators import (
     ESTIMATORS,
     Applied,
+    Backdated,
     CalibratingEkf,
     Calibration,
     DelayedEkf,
@@ -76,6 +77,7 @@ __all__ = [
     "LAWS",
     "Alarm",
     "Applied",
+    "Backdated",
     "CalibratingEkf",
     "Calibration",
     "Circle",

@@ -17,6 +17,7 @@ Laglab = Callable[..., "subprocess.CompletedProcess[str]"]
 
 MINE = '''
 """What a user wrote."""
+import time
 from typing import NamedTuple
 import numpy as np
 from laglab_control import DelayedEkf, RigidMotions, PolarLaw
@@ -96,6 +97,13 @@ class Short(Wide):
 class NoState(Wide):
     def correct(self, state, measurements, inputs=()):
         return state.x if state.tick == 40 else super().correct(state, measurements, inputs)
+
+
+class Sleeping(Wide):
+    def correct(self, state, measurements, inputs=()):
+        if state.tick == 40:
+            time.sleep(3600)
+        return super().correct(state, measurements, inputs)
 
 
 class Leaving(Wide):
@@ -251,6 +259,17 @@ def test_what_fails_under_way_ends_both_processes_in_one_line_and_keeps_the_reco
 ) -> None:
     failed = laglab(*LAB, kind, f"mine:{name}")
     failed_as_it_must(mine / "run", failed.returncode, failed.stderr, said)
+
+
+@pytest.mark.slow
+def test_one_that_never_answers_is_given_up_and_its_process_is_ended(
+    laglab: Laglab, mine: Path
+) -> None:
+    failed = laglab(*LAB, "--estimator", "mine:Sleeping", "--silence", "1")
+    assert failed.returncode == 4
+    (line,) = (line for line in failed.stderr.splitlines() if line.startswith("laglab:"))
+    assert "silent" in line
+    assert 40 <= len(trace(mine / "run").splitlines()) - 1 <= 41
 
 
 def in_this_process(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str]:

@@ -84,6 +84,26 @@ class Mutating(Right):
         return State(inner, inner.x.copy(), inner.P, inner.tick)
 
 
+class Sharing(Right):
+    """Every version of its state has the same list behind it."""
+
+    def start(self, x, P):
+        return super().start(x, P)._replace(inner=(self.ekf.start(x, P), []))
+
+    def _with(self, inner, log):
+        return self._of(inner)._replace(inner=(inner, log))
+
+    def predict(self, state, u):
+        inner, log = state.inner
+        log.append(u)
+        return self._with(self.ekf.predict(inner, u), log)
+
+    def correct(self, state, measurements, inputs=()):
+        inner, log = state.inner
+        right = self._with(self.ekf.correct(inner, measurements, inputs), log)
+        return right._replace(x=right.x + 1e-12 * len(log))
+
+
 class Unordered(Right):
     """Weighs what came first the most."""
 
@@ -248,6 +268,7 @@ ROWS: list[tuple[Kind, str, str, str]] = [
     ("estimator", "Nan", "interface", "must answer a finite array x"),
     ("estimator", "Impure", "pure", "predict answers twice differently"),
     ("estimator", "Mutating", "pure", "correct changes the state that it is given"),
+    ("estimator", "Sharing", "pure", "calls that were made twice leave something behind"),
     ("estimator", "Unordered", "order", "another order"),
     ("estimator", "Repeating", "repeats", "repeated measurements make"),
     ("estimator", "Late", "delays", "60 ticks late"),

@@ -60,6 +60,8 @@ def test_what_is_made_is_installed_listed_checked_and_run(
     listed = run("laglab", f"{kind}s")
     assert "my-own" in listed.stdout
     assert "my-own 0.1.0" in listed.stdout
+    checked = run("laglab", "check", "my-own")
+    assert checked.returncode == 0, checked.stdout + checked.stderr
     told = ("--set", "estimator.guard=false", "--duration", "1", "--out", "run")
     done = run("laglab", "run", "lab", option, "my-own", *told)
     assert done.returncode == 0, done.stderr

@@ -123,7 +123,10 @@ class Brought(Estimator[State]):
         """Where it says that the robot will be (3,)."""
         if not self._has("ahead"):
             return None
-        pose = np.asarray(self._said("ahead", state, list(inputs)))
+        answer = self._said("ahead", state, list(inputs))
+        if answer is None:
+            return None
+        pose = np.asarray(answer)
         if pose.shape != (3,) or not _is_finite(pose):
             raise self._failed("ahead", f"a finite pose (3,), not {pose.tolist()}")
         return pose

@@ -81,9 +81,11 @@ def _told(state: State) -> tuple[bytes, bytes]:
 
 
 def interface(subject: Subject) -> str:
-    """start, predict, correct, and a state of every tick."""
+    """start, predict, correct, a state of every tick, and what else it has."""
     record = drive(MODEL, TICKS, seed=1)
     states = _run(subject.estimator, record, _late(record, 3))
+    subject.estimator.innovation(states[-1])
+    subject.estimator.ahead(states[-1], list(record.inputs[-3:]))
     size = len(states[-1].x) if states[-1].x is not None else 0
     return f"a state of {size} components, followed over {TICKS} ticks"
 
@@ -92,7 +94,7 @@ def pure(subject: Subject) -> str:
     """The same answer twice, and nothing that it was given is changed."""
     estimator, record = subject.estimator, drive(MODEL, TICKS, seed=2)
     x, P = record.x.copy(), record.P
-    state = estimator.start(x, P)
+    state = estimator.correct(estimator.start(x, P), (), ())
     for k, u in enumerate(record.inputs, start=1):
         before, given = _told(state), [record.measured(max(k - 3, 0))]
         once, again = (estimator.predict(state, u) for _ in range(2))
@@ -105,6 +107,8 @@ def pure(subject: Subject) -> str:
         same = np.array_equal(given[0].z, record.measurements[given[0].tick])
         need(same and np.array_equal(u, record.inputs[k - 1]), "it changes what it is told")
     need(np.array_equal(x, record.x) and np.array_equal(P, record.P), "it changes its prior")
+    alone = _run(estimator, record, lambda k: [record.measured(max(k - 3, 0))] if k else [])[-1]
+    need(_told(state) == _told(alone), "calls that were made twice leave something behind")
     return "each call twice, over a whole run"
 
 

@@ -4,6 +4,7 @@
 """
 
 from collections.abc import Iterable
+from functools import cache
 from importlib.metadata import entry_points
 
 from pydantic import WithJsonSchema
@@ -16,11 +17,16 @@ def known(group: Group, name: str, shipped: Iterable[str]) -> str:
     """The name. Raises ValueError, listing them, when there is none like it."""
     if name in shipped or is_module_class(name):
         return name
-    installed = sorted(entry_points(group=group).names)
-    if name in installed:
+    if name in _installed(group):
         return name
-    listed = ", ".join((*shipped, *installed))
+    listed = ", ".join((*shipped, *_installed(group)))
     raise ValueError(f"must be one of {listed}, or module:Class, not {name!r}")
+
+
+@cache
+def _installed(group: Group) -> list[str]:
+    """A study asks as often as it has cells."""
+    return sorted(entry_points(group=group).names)
 
 
 def known_estimator(name: str) -> str:
