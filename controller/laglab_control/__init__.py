@@ -12,12 +12,14 @@ from laglab_control.controller import (
     Controller,
     StationConfig,
     is_far,
+    without_blind_guard,
 )
 from laglab_control.errata import Erratum, PrintedController
 from laglab_control.errors import ConfigError, ControlError, StampError
 from laglab_control.estimators import (
     ESTIMATORS,
     Applied,
+    Backdated,
     CalibratingEkf,
     Calibration,
     DelayedEkf,
@@ -39,11 +41,27 @@ from laglab_control.estimators import (
 from laglab_control.estimators.kalman import normalised_squared
 from laglab_control.flight import Echo
 from laglab_control.guard import Alarm, Guard
-from laglab_control.laws import DelayMargin, Demand, Law, PolarLaw, SpeedLimits, delay_margin
+from laglab_control.laws import (
+    LAWS,
+    Circle,
+    DelayMargin,
+    Demand,
+    Eight,
+    Law,
+    Path,
+    PolarLaw,
+    Reference,
+    SpeedLimits,
+    TrackingLaw,
+    Waypoints,
+    delay_margin,
+)
 from laglab_control.model import Model, NonlinearModel
 from laglab_control.plugins import (
     Plugin,
     PluginError,
+    PluginFailedError,
+    at_tick,
     find_plugin,
     first_line,
     installed_plugins,
@@ -56,10 +74,13 @@ __all__ = [
     "ESTIMATORS",
     "FAR",
     "INITIAL_VARIANCE",
+    "LAWS",
     "Alarm",
     "Applied",
+    "Backdated",
     "CalibratingEkf",
     "Calibration",
+    "Circle",
     "ConfigError",
     "Control",
     "ControlError",
@@ -68,6 +89,7 @@ __all__ = [
     "DelayedEkf",
     "Demand",
     "Echo",
+    "Eight",
     "Ekf",
     "Erratum",
     "Estimator",
@@ -78,12 +100,15 @@ __all__ = [
     "Model",
     "NonlinearModel",
     "Parameters",
+    "Path",
     "Plugin",
     "PluginError",
+    "PluginFailedError",
     "PolarLaw",
     "Popf",
     "PopfExact",
     "PrintedController",
+    "Reference",
     "Replay",
     "ReplayedInputs",
     "Rewinding",
@@ -94,8 +119,11 @@ __all__ = [
     "State",
     "StationConfig",
     "Taken",
+    "TrackingLaw",
     "TuePredictor",
+    "Waypoints",
     "WheelScales",
+    "at_tick",
     "chi_square_bound",
     "constant_delay",
     "delay_margin",
@@ -106,5 +134,6 @@ __all__ = [
     "is_module_class",
     "normalised_squared",
     "replay",
+    "without_blind_guard",
     "wrap",
 ]

@@ -1,8 +1,8 @@
 """Estimate, extrapolate, command: the remote station's part of a tick, without messages."""
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from laglab_control.doubt import doubt
 from laglab_control.errors import ConfigError
+from laglab_control.estimators.brought import Brought
 from laglab_control.estimators.family import EstimatorKind, estimator_kind
 from laglab_control.estimators.interface import (
     Applied,
@@ -28,6 +29,7 @@ from laglab_control.laws import STAND_STILL, Demand, Law, PolarLaw, SpeedLimits,
 from laglab_control.limits import Ticks, check, covariance, finite_pose
 from laglab_control.model import Matrix, Vector
 from laglab_control.motion import Way, joined
+from laglab_control.plugins import PluginError
 from laglab_control.robot import RobotModel, Ways
 
 INITIAL_VARIANCE = 1e-4
@@ -47,10 +49,13 @@ def is_far(pose: Iterable[float], goal: Iterable[float]) -> bool:
 class StationConfig:
     """What the station is told. Poses [m, m, rad], delays in ticks.
 
-    `estimator` is one of ESTIMATORS. Raises ConfigError, naming the field, when one is not right.
+    `estimator` is one of ESTIMATORS, an installed plug-in, or `module:Class`. Raises PluginError
+    for one that cannot be had, and ConfigError, naming the field, when one is not right.
     """
 
     estimator: str = "popf"
+    estimator_options: Mapping[str, object] = field(default_factory=dict)
+    """Of one that somebody brought, which is made as `Class(model, **options)`."""
     model: RobotModel = field(default_factory=RobotModel)
     law: Law = field(default_factory=PolarLaw)
     limits: SpeedLimits = field(default_factory=SpeedLimits)
@@ -70,7 +75,7 @@ class StationConfig:
     """The robot's tick that is the controller's tick 0: the law's time is the robot's."""
 
     def __post_init__(self) -> None:
-        estimator_kind(self.estimator)
+        estimator_kind(self.estimator, self.estimator_options)
         check(self)
         x = finite_pose(self.initial_estimate, "initial_estimate")
         P = covariance(self.initial_covariance, 3, "initial_covariance")
@@ -81,6 +86,13 @@ class StationConfig:
             )
         object.__setattr__(self, "initial_estimate", x)
         object.__setattr__(self, "initial_covariance", P)
+
+
+def without_blind_guard(config: StationConfig) -> StationConfig:
+    """The same, and no guard around an estimator that does not show how wild a measurement is."""
+    estimator = estimator_kind(config.estimator, config.estimator_options).make(config.model)
+    blind = isinstance(estimator, Brought) and not estimator.is_watchable
+    return replace(config, guard=False) if blind else config
 
 
 class Control(NamedTuple):
@@ -111,7 +123,7 @@ class Controller:
     @cached_property
     def kind(self) -> EstimatorKind:
         """What the estimator is."""
-        return estimator_kind(self.config.estimator)
+        return estimator_kind(self.config.estimator, self.config.estimator_options)
 
     @cached_property
     def _began(self) -> list[float]:
@@ -125,9 +137,16 @@ class Controller:
 
     @cached_property
     def _guard(self) -> Guard | None:
+        if not self.config.guard:
+            return None
         model, kind = self.config.model, self.kind
-        learner = kind.learner(model) if kind.learner else None
-        return Guard(kind.make(model), model, learner) if self.config.guard else None
+        estimator = kind.make(model)
+        if isinstance(estimator, Brought) and not estimator.is_watchable:
+            raise PluginError(
+                f"estimator.guard: {estimator.name} has no method innovation(state), by which a "
+                "guard sees what is wild: leave the guard out"
+            )
+        return Guard(estimator, model, kind.learner(model) if kind.learner else None)
 
     def start(self) -> Control:
         """Tick 0, before its correction."""
@@ -169,7 +188,7 @@ class Controller:
         if pose is None or self.diverged(pose):
             return Control(estimate, flight, STAND_STILL, pose, P)
         tick = self.config.first_tick + flight.tick + flight.command_delay
-        there = self._at_arrival(pose, flight, last)
+        there = self._there(estimate, flight, last, pose)
         drive = self.command(there, tick, last, P)
         if not self.config.plan:
             return Control(estimate, flight, drive, pose, P)
@@ -238,7 +257,7 @@ class Controller:
         x, P, flight = control.pose, control.P, control.flight
         if x is None or P is None:
             return None
-        pose = self._at_arrival(x, flight, control.drive)
+        pose = self._there(control.estimate, flight, control.drive, x)
         for u in flight.in_flight if self.kind.predicts else ():
             x, P = self.config.model.predict(x, P, u)
         return Belief(np.array(pose), P)
@@ -262,6 +281,12 @@ class Controller:
     def _applied(self, u: Vector, drive: Demand) -> Vector:
         """The input that the estimator is told."""
         return u
+
+    def _there(self, estimate: State, flight: Flight, drive: Demand, x: Vector) -> Way[float]:
+        """Where the robot will be when the command that is now made comes into force, as the
+        estimator says, or by (29)."""
+        ahead = self._estimator.ahead(estimate, flight.in_flight)
+        return self._at_arrival(x, flight, drive) if ahead is None else Way(*ahead.tolist())
 
     def _at_arrival(self, x: Vector, flight: Flight, drive: Demand) -> Way[float]:
         """(29): where the robot will be when the command that is now made comes into force."""

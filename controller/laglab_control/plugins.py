@@ -1,18 +1,29 @@
 """What users bring, by name: `module:Class`, or an entry point of an installed distribution."""
 
-from collections.abc import Iterator
+import inspect
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
-from typing import Literal, NamedTuple, Protocol
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, Literal, NamedTuple, Protocol
 
-from laglab_control.errors import ControlError
+from laglab_control.errors import ControlError, StampError
 
+HERE = ""
+"""The current directory, in Python's search path: last, so that nothing there hides a library."""
 Group = Literal["laglab.estimators", "laglab.laws", "laglab.plants"]
 """The entry points' groups."""
 
 
 class PluginError(ControlError):
     """What was named cannot be had, or does not do what it must; the text names it."""
+
+
+class PluginFailedError(PluginError):
+    """It failed while it ran, or answered what it must not."""
 
 
 class Maker(Protocol):
@@ -45,6 +56,7 @@ def find_plugin(group: Group, name: str, shipped: tuple[str, ...] = ()) -> Maker
     is none, or it cannot be loaded.
     """
     if is_module_class(name):
+        _look_here()
         return _loaded(EntryPoint(name, name, group), name)
     entries = {entry.name: entry for entry in entry_points(group=group)}
     if name not in entries:
@@ -64,6 +76,68 @@ def installed_plugins(group: Group) -> Iterator[Plugin]:
         yield Plugin(entry.name, origin, description)
 
 
+def source_of(group: Group, name: str) -> Path | None:
+    """The file of the module that a class comes from; None where there is none to be seen."""
+    values = (
+        [name]
+        if is_module_class(name)
+        else [entry.value for entry in entry_points(group=group) if entry.name == name]
+    )
+    for value in values:
+        _look_here()
+        with suppress(ImportError, ValueError):
+            found = find_spec(value.partition(":")[0])
+            if found and found.origin and Path(found.origin).is_file():
+                return Path(found.origin)
+    return None
+
+
+def made(name: str, maker: Maker, *told: object, **options: object) -> object:
+    """What the class makes of it. Raises PluginError when it refuses."""
+    try:
+        return maker(*told, **options)
+    except Exception as error:  # it is a stranger's
+        raise PluginError(f"{name} cannot be made: {one_line(error)}") from error
+
+
+def refuse_misfit(name: str, brought: object, method: str, *parameters: str) -> None:
+    """Raises PluginError unless it has a method that can be given so much."""
+    function = getattr(brought, method, None)
+    wanted = f"{method}({', '.join(parameters)})"
+    if not callable(function):
+        raise PluginError(f"{name} has no method {wanted}")
+    try:
+        inspect.signature(function).bind(*parameters)
+    except TypeError as error:
+        raise PluginError(f"{name}.{method} must be {wanted}: {error}") from None
+    except ValueError:
+        return  # it is not written in Python: time will tell
+
+
+def called(name: str, method: Callable[..., object], *told: object) -> Any:
+    """What the method of a stranger's answers. Raises PluginFailedError when it fails."""
+    try:
+        return method(*told)
+    except StampError:
+        raise  # as an estimator must
+    except (Exception, SystemExit) as error:
+        raise PluginFailedError(f"{name}.{method.__name__}: {one_line(error)}") from error
+
+
+@contextmanager
+def at_tick(tick: int) -> Iterator[None]:
+    """Whatever somebody brought fails within is said with the tick."""
+    try:
+        yield
+    except PluginFailedError as error:
+        raise PluginFailedError(f"tick {tick}: {error}") from error
+
+
+def one_line(error: BaseException) -> str:
+    """Kind and text."""
+    return " ".join(f"{type(error).__name__}: {error}".split()).rstrip(": ")
+
+
 def first_line(made_by: object) -> str:
     """Of the docstring; nothing where there is none."""
     lines = (getattr(made_by, "__doc__", None) or "").strip().splitlines()
@@ -76,11 +150,20 @@ def _loaded(entry: EntryPoint, name: str) -> Maker:
         found: object = import_module(module)
         for part in attribute.split("."):
             found = getattr(found, part)
-    except Exception as error:  # whatever a stranger's module does when it is imported
-        raise PluginError(f"{name}: {type(error).__name__}: {error}") from error
+    except (
+        Exception,
+        SystemExit,
+    ) as error:  # as strangers do
+        raise PluginError(f"{name}: {one_line(error)}") from error
     if not callable(found):
         raise PluginError(f"{name}: {entry.value} is no class, but {found!r}")
     return found
+
+
+def _look_here() -> None:
+    """A command's own search path does not have the current directory."""
+    if HERE not in sys.path:
+        sys.path.append(HERE)
 
 
 def _singular(group: Group) -> str:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from laglab_control import Control, Controller, Demand, StationConfig
+from laglab_control import Control, Controller, Demand, StationConfig, at_tick
 from laglab_control.model import Matrix, Vector
 from laglab_station.hearing import Came, PlayedOut, echoes, measured, recalled
 from laglab_station.session import SessionTick
@@ -31,18 +31,20 @@ def shadow(
 
     Measurements are played out as by the station. The law of `config` is not asked. Over ticks that
     are missing, the last command held, or its plan went on. It ends early when the estimate has
-    become infinite.
+    become infinite. Raises PluginFailedError, naming the tick, when an estimator that somebody
+    brought fails.
     """
     controller = Controller(config)
     control = controller.start()
     first = last = None
     for heard in _played_out(session, playout):
         first, last = (heard.tick, heard.tick) if first is None or last is None else (first, last)
-        for lost in range(heard.tick - last):
-            control = controller.unanswered(control) if lost else control
-            control = controller.advance(control)
+        with at_tick(heard.tick):
+            for lost in range(heard.tick - last):
+                control = controller.unanswered(control) if lost else control
+                control = controller.advance(control)
+            control = _followed(controller, control, heard, first)
         last = heard.tick
-        control = _followed(controller, control, heard, first)
         x, P = control.pose, control.P
         if x is not None and not np.all(np.isfinite(x)):
             return

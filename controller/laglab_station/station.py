@@ -6,7 +6,14 @@ from itertools import starmap
 
 import numpy as np
 
-from laglab_control import Control, Controller, StationConfig, is_far
+from laglab_control import (
+    Control,
+    Controller,
+    PluginFailedError,
+    StationConfig,
+    at_tick,
+    is_far,
+)
 from laglab_control.flight import MEMORY
 from laglab_protocol import (
     STATION_COMPONENT,
@@ -119,6 +126,7 @@ class Station:
     def report(self) -> StationReport:
         """How the run went so far."""
         self._look_back()
+        learned = self._learned()
         p50, p99, longest = self._times.quantiles() or (None, None, None)
         return StationReport(
             n_seen=self._control.flight.usual_delay,
@@ -132,8 +140,16 @@ class Station:
             gated=self._alarms.gated(self._controller, self._control),
             late=self._played_out.late if self._played_out else 0,
             emergency_stop=self._warnings.emergency_stop,
-            calibration=tuple(starmap(Calibrated, self._controller.learned(self._control))),
+            calibration=learned,
         )
+
+    def _learned(self) -> tuple[Calibrated, ...]:
+        """What cannot be told any more is not what the report is for."""
+        try:
+            return tuple(starmap(Calibrated, self._controller.learned(self._control)))
+        except PluginFailedError as error:
+            self.warn("learned", str(error))
+            return ()
 
     def heartbeat(self) -> list[bytes]:
         """The frames that make the station known to the robot, and what it was told."""
@@ -151,11 +167,15 @@ class Station:
         regular = self._unjudged  # a measurement came, so at the next tick one may too
         self._look_back()
         under_way = self._tick is not None and self._joining is None and self._outcome is None
-        if under_way and self._ahead is None:
-            self._ahead = self._controller.advance(self._control)
-            if regular and self._measurement_delay is not None:
-                due = self._ahead.flight.tick - self._measurement_delay
-                self._ahead = self._controller.expect(self._ahead, due)
+        if under_way and self._ahead is None and self._tick is not None:
+            with at_tick(self._tick + 1):
+                self._prepare(regular)
+
+    def _prepare(self, regular: bool) -> None:
+        self._ahead = self._controller.advance(self._control)
+        if regular and self._measurement_delay is not None:
+            due = self._ahead.flight.tick - self._measurement_delay
+            self._ahead = self._controller.expect(self._ahead, due)
 
     def end(self, reason: EndReason) -> list[bytes]:
         """End the run from this side: the frames to send."""
@@ -240,7 +260,7 @@ class Station:
 
     def _advance_timed(self, tick: int, came: Came) -> None:
         started = self._clock() if self._clock else 0
-        with np.errstate(over="ignore", invalid="ignore"):  # what follows is seen as diverged
+        with at_tick(tick), np.errstate(over="ignore", invalid="ignore"):  # seen as diverged
             self._advance(tick, came)
         if self._clock:
             self._took = self._clock() - started
@@ -320,5 +340,9 @@ class Station:
             self._took = None
         if self._unjudged:
             self._unjudged = False
-            if problem := self._controller.warning(self._control):
+            try:
+                problem = self._controller.warning(self._control)
+            except PluginFailedError as error:
+                problem = str(error)
+            if problem:
                 self.warn("estimator", f"tick {self._tick}: {problem}")

@@ -10,6 +10,7 @@ from laglab import __version__
 from laglab.commands import (
     animate,
     bench,
+    check,
     compare,
     consistency,
     errata,
@@ -18,6 +19,7 @@ from laglab.commands import (
     figure,
     fmu,
     maps,
+    new,
     protocol,
     replay,
     report,
@@ -37,7 +39,7 @@ from laglab.errors import LaglabError, RunError, ScenarioError
 from laglab.interrupts import INTERRUPTED, on_interrupt
 from laglab.live import spelled_out
 from laglab.output import guarded
-from laglab.runs.errors import LINK_LOST, SIDE_ERRORS
+from laglab.runs.errors import CUT_SHORT, SIDE_ERRORS
 
 
 def _tell_version(wanted: bool) -> None:
@@ -67,6 +69,9 @@ app.command("run")(run.run)
 app.command("replay")(replay.replay)
 app.command("scenarios")(scenarios.scenarios)
 app.command("estimators")(estimators.estimators)
+app.command("laws")(estimators.laws)
+app.command("check")(check.check)
+app.command("new")(new.new)
 app.command("scenario")(scenario.scenario)
 app.command("figure")(figure.figure)
 app.command("report")(report.report)
@@ -115,7 +120,7 @@ def _exit_code(arguments: list[str] | None) -> int:
         return _say(error.format_message(), error.exit_code)
     except LaglabError as error:
         return _say(str(error), error.exit_code)
-    except LINK_LOST as error:
+    except CUT_SHORT as error:
         return _say(str(error), RunError.exit_code)
     except SIDE_ERRORS as error:
         return _say(str(error), ScenarioError.exit_code)

@@ -71,7 +71,7 @@ def _chosen(scenario: Scenario | str | Path, overrides: Mapping[str, object] | N
 
 
 def _whole(ending: Ending, done: Run) -> Run:
-    if ending.outcome is None:
+    if ending.outcome is None or ending.problem:
         raise RunError(ending.problem)
     if ending.outcome.reason is EndReason.INTERRUPTED:
         raise KeyboardInterrupt

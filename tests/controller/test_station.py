@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from laglab_control import ConfigError, PolarLaw, RobotModel, StationConfig
+from laglab_control import ControlError, PolarLaw, RobotModel, StationConfig
 from laglab_protocol import (
     NO_COMMAND,
     Command,
@@ -185,6 +185,33 @@ def test_a_kilometre_from_both_goal_and_first_estimate_is_diverged(x, diverged):
     assert (robot.station.outcome is not None) is diverged
 
 
+class Clock:
+    """A law that writes down for which times it is asked."""
+
+    def __init__(self):
+        self.asked = []
+
+    def drive(self, pose, time, memory):
+        self.asked.append(round(time, 6))
+        return 0.0, 0.0, None
+
+
+def test_the_time_of_the_law_is_the_robots_whenever_the_station_met_it():
+    law = Clock()
+    robot = Robot(make("raw", n=3, law=law))
+    for tick in (500, 501):
+        robot.tick(tick, (tick, START))
+    assert law.asked == [5.03, 5.04]
+    taken = Clock()
+    robot = Robot(make("delayed-ekf", n=3, law=taken))
+    for tick in range(500, 603):
+        robot.drive(tick, Measurement(*START, 0.0, 0.0, tick, tick - 1 - 3))
+    assert taken.asked[:2] == [6.02, 6.03]
+    for _ in range(4):  # it begins again, and so does its time
+        robot.tick(0, (0, START))
+    assert taken.asked[-1] == 0.03
+
+
 @pytest.mark.parametrize("there", [(2000.0, 0.0, 0.0), (np.nan, 0.0, 0.0)])
 def test_a_robot_under_way_that_stands_where_no_run_leads_is_not_taken_over(there):
     robot = Robot(make())
@@ -220,5 +247,5 @@ def test_heartbeat_says_ground_station():
     ],
 )
 def test_a_bad_config_is_named(config, said):
-    with pytest.raises(ConfigError, match=said):
+    with pytest.raises(ControlError, match=said):
         StationConfig(**config)

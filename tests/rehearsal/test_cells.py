@@ -9,6 +9,7 @@ import pytest
 
 import laglab
 from laglab.results.nees import nees
+from laglab.results.target import Target
 from laglab.studies.sweep.cell import Cell
 from laglab.studies.sweep.compute import computed
 from laglab.studies.sweep.judged import Record, judgements
@@ -128,7 +129,7 @@ def at(*distances: float) -> Record:
 def test_it_has_settled_when_it_does_not_leave_any_more(
     distances: tuple[float, ...], settled: float, converged: bool
 ) -> None:
-    judged = judgements(at(*distances), HERE, 0.5, 0)
+    judged = judgements(at(*distances), Target(HERE, None, 0.5), 0)
     assert judged.settled_s == pytest.approx([settled], nan_ok=True)
     assert judged.converged.tolist() == [converged]
 
@@ -143,12 +144,12 @@ def test_many_robots_at_once_are_judged_as_each_alone() -> None:
     for each in (truth, estimates, claimed, applied):
         each[~np.isnan(diverged), 21:] = np.nan
     record = Record(truth, estimates, claimed, applied, diverged)
-    together = judgements(record, HERE, 0.02, 5)
+    together = judgements(record, Target(HERE, None, 0.02), 5)
     for robot in range(30):
         ticks = 21 if diverged[robot] == 20 else 50
         alone = Record(
             *(each[robot : robot + 1, :ticks] for each in record[:4]),
             diverged[robot : robot + 1],
         )
-        for one, all_ in zip(judgements(alone, HERE, 0.02, 5), together, strict=True):
+        for one, all_ in zip(judgements(alone, Target(HERE, None, 0.02), 5), together, strict=True):
             assert one[0] == pytest.approx(all_[robot], rel=1e-12, nan_ok=True)

@@ -75,7 +75,7 @@ def test_the_command_leaves_table_and_picture(laglab, tmp_path):
 def test_a_filter_that_claims_nothing_cannot_be_judged(laglab):
     ended = laglab("consistency", "lab", "--judge", "raw")
     assert (ended.returncode, ended.stdout) == (2, "")
-    assert "--judge: 'raw' is not one of ekf, popf" in ended.stderr
+    assert "--judge: must not be 'raw', which estimates nothing" in ended.stderr
 
 
 @pytest.mark.parametrize("scenario", ["lab", "lab-radio"])

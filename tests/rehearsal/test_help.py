@@ -43,8 +43,8 @@ def test_the_estimators_are_listed_with_what_they_are(capsys: pytest.CaptureFixt
     listed = " ".join(said(["estimators"], capsys).split())
     asked = "".join(said(["run", "--help"], capsys).split())  # lines break at hyphens too
     for name, kind in ESTIMATORS.items():
-        assert f"{name} {kind.description}" in listed
-    assert f"furtheronesshadowit:{','.join(ESTIMATORS)}." in asked
+        assert f"{name} laglab {kind.description}" in listed
+    assert f"furtheronesshadowit:{','.join(ESTIMATORS)},aplug-in" in asked
 
 
 @pytest.mark.parametrize(

@@ -25,6 +25,7 @@ NOISY = [
     ("lab", {"estimator.kind": "raw", "estimator.guard": False}),
     ("lab", {"link.command_delay": 0, "estimator.kind": "popf"}),
     ("lab", {"link.measurement_delay": 0}),
+    ("lab", {"law.accel_max": 1.0, "law.alpha_max": 4.0}),
     ("lab-real", {"estimator.guard": False, "plant.integration": "exact"}),
 ]
 

@@ -171,5 +171,7 @@ def test_all_that_ship_are_short_and_whole() -> None:
         "lab",
         "lab-radio",
         "lab-real",
+        "track-circle",
+        "track-eight",
     ]
     assert all(scenario.description for scenario in scenarios.values())

@@ -20,8 +20,8 @@ from laglab.scenario.reference import GENERATED, schema
 Printed = Callable[..., str]
 REFERENCE = Path(__file__).parents[2] / "docs" / "reference"
 UNITS = {
-    "-", "1", "s", "ticks", "m", "m/s", "rad/s", "1/s", "m, m, rad", "m², m², rad²", "(rad/s)²",
-    "bit/s", "byte", "deg",
+    "-", "1", "s", "ticks", "m", "m/s", "rad/s", "m/s²", "rad/s²", "1/s", "m, m, rad",
+    "m², m², rad²", "(rad/s)²", "bit/s", "byte", "deg",
 }  # fmt: skip
 
 

@@ -13,7 +13,7 @@ from laglab.runs.robot_side import gateway_config, link_fates, robot_parameters,
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario, changed, load
 from laglab.scenario.keys import ANY, rows
-from laglab_control import ESTIMATORS
+from laglab_control import ESTIMATORS, LAWS
 from laglab_gateway.link.log import LINK_HEADER
 
 Keys = dict[str, st.SearchStrategy[Any]]
@@ -94,6 +94,13 @@ LAW: Keys = dict.fromkeys(
     ),
     POSITIVE,
 )
+WITH_A_PATH: Keys = {
+    "kind": st.sampled_from(["tracking", "somebodys:Law"]),
+    "path": st.sampled_from(["circle(1, 0.5)", "eight( 3,2 )", "way.csv", "earlier run/way.csv"]),
+    "options": st.dictionaries(
+        st.sampled_from(["k_x", "k_y"]), st.floats(0.1, 9) | st.lists(st.floats(0, 1)), max_size=2
+    ),
+}
 SAFETY: Keys = {
     **dict.fromkeys(("v_limit", "omega_limit"), POSITIVE),
     **dict.fromkeys(("link_timeout", "ramp"), NOT_NEGATIVE),
@@ -117,7 +124,7 @@ TOP: Keys = {
     "silence_timeout": POSITIVE,
     "plant": table(PLANT),
     "estimator": table(ESTIMATOR),
-    "law": table(LAW),
+    "law": table(LAW) | st.fixed_dictionaries(WITH_A_PATH, optional=LAW),
     "link": table(LINK),
     "safety": table(SAFETY),
     "origin": table(ORIGIN),
@@ -131,15 +138,17 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for log in (folder / "link.csv", folder / "earlier run" / "link.csv"):
         log.parent.mkdir(exist_ok=True)
         log.write_text(LINK_HEADER)
+    for way in (folder / "way.csv", folder / "earlier run" / "way.csv"):
+        way.write_text("time,x,y,theta,v,omega\n0,0,0,0,0,0\n")
     return folder
 
 
 def at(folder: Path, fields: dict[str, Any]) -> Scenario:
     """The scenario whose file stands in that folder."""
-    replay = fields.get("link", {}).get("replay")
-    return changed(
-        Scenario(), {**fields, **({"link.replay": str(folder / replay)} if replay else {})}
-    )
+    replay, path = fields.get("link", {}).get("replay"), fields.get("law", {}).get("path", "")
+    files = {"link.replay": str(folder / replay)} if replay else {}
+    files |= {"law.path": str(folder / path)} if path.endswith("csv") else {}
+    return changed(Scenario(), {**fields, **files})
 
 
 def test_the_strategies_know_every_key() -> None:
@@ -147,7 +156,7 @@ def test_the_strategies_know_every_key() -> None:
         *TOP,
         *(f"plant.{key}" for key in PLANT),
         *(f"estimator.{key}" for key in ESTIMATOR),
-        *(f"law.{key}" for key in LAW),
+        *(f"law.{key}" for key in {**LAW, **WITH_A_PATH}),
         *(f"link.{key}" for key in LINK),
         *(f"link.playout.{key}" for key in PLAYOUT),
         *(f"safety.{key}" for key in SAFETY),
@@ -174,8 +183,9 @@ def test_what_is_written_reads_back_to_the_same(folder: Path, fields: dict[str, 
 @settings(max_examples=50, deadline=None)
 @given(table(TOP))
 def test_what_a_scenario_allows_both_sides_take(folder: Path, fields: dict[str, Any]) -> None:
-    scenario = at(folder, fields)
-    station_config(scenario)
+    scenario = at(folder, fields | {"law": {**fields.get("law", {}), "options": {}}})
+    if scenario.law.kind in LAWS:
+        station_config(scenario)
     gateway_config(scenario)
     link_fates(scenario)
     shown_parameters(scenario)

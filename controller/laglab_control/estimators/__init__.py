@@ -1,5 +1,6 @@
 """Estimators: pure functions over immutable states, each line under the paper's equation."""
 
+from laglab_control.estimators.backdated import Backdated
 from laglab_control.estimators.calibrating_ekf import CalibratingEkf
 from laglab_control.estimators.delayed_ekf import DelayedEkf
 from laglab_control.estimators.ekf import Ekf
@@ -18,6 +19,7 @@ from laglab_control.estimators.windows import ReplayedInputs, RigidMotions
 __all__ = [
     "ESTIMATORS",
     "Applied",
+    "Backdated",
     "CalibratingEkf",
     "Calibration",
     "DelayedEkf",

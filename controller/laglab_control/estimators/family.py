@@ -1,9 +1,11 @@
 """The estimators by name, for the robot."""
 
 from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from laglab_control.errors import ConfigError
+from laglab_control.estimators.brought import brought_estimator
 from laglab_control.estimators.calibrating_ekf import CalibratingEkf
 from laglab_control.estimators.delayed_ekf import DelayedEkf
 from laglab_control.estimators.ekf import Ekf
@@ -15,6 +17,7 @@ from laglab_control.estimators.rewinding import Rewinding
 from laglab_control.estimators.tue_predictor import TuePredictor
 from laglab_control.estimators.wheel_scales import WheelScales
 from laglab_control.estimators.windows import RigidMotions
+from laglab_control.plugins import Maker, find_plugin, first_line
 from laglab_control.robot import RobotModel
 
 
@@ -27,17 +30,26 @@ class EstimatorKind(NamedTuple):
     """Whether it gives an estimate of the present, which can be extrapolated and reported."""
     learner: Callable[[RobotModel], Estimator[Any]] | None = None
     """What takes over when a guard finds that its model is wrong."""
+    admits: Mapping[str, str] = MappingProxyType({})
+    """Which checks of `laglab check` it does not hold, and why."""
 
+
+LATE_FOR_FRESH = {
+    "delays": "it compares a late measurement with where the robot is",
+    "NEES": "so it is surer than it may be",
+}
 
 ESTIMATORS: Mapping[str, EstimatorKind] = {
     "raw": EstimatorKind(
         "no filter and no prediction: the newest measurement",
         lambda _: Raw(),
         predicts=False,
+        admits={"delays": "it takes what was measured late for the present"},
     ),
     "ekf": EstimatorKind(
         "the plain EKF, which takes a late measurement for a fresh one",
         lambda model: Rewinding(Ekf(model)),
+        admits=LATE_FOR_FRESH,
     ),
     "popf": EstimatorKind(
         "the paper's filter",
@@ -46,6 +58,7 @@ ESTIMATORS: Mapping[str, EstimatorKind] = {
     "popf-printed": EstimatorKind(
         "the paper's filter with the innovation as (28) prints it",
         lambda model: Rewinding(Popf(model, innovation_at_k=True)),
+        admits=LATE_FOR_FRESH,
     ),
     "popf-exact": EstimatorKind(
         "the structure of popf with the true cross-covariances",
@@ -68,8 +81,23 @@ ESTIMATORS: Mapping[str, EstimatorKind] = {
 }
 
 
-def estimator_kind(name: str) -> EstimatorKind:
-    """The estimator of that name. Raises ConfigError, listing the names, when there is none."""
+def estimator_kind(name: str, options: Mapping[str, object] | None = None) -> EstimatorKind:
+    """The estimator of that name: shipped, of a plug-in, or `module:Class`.
+
+    Raises PluginError, listing the names, when there is none, and ConfigError for options of one
+    that has none.
+    """
+    told = dict(options or {})
     if name not in ESTIMATORS:
-        raise ConfigError(f"no estimator {name!r}: take one of {', '.join(ESTIMATORS)}")
+        return _brought(name, find_plugin("laglab.estimators", name, tuple(ESTIMATORS)), told)
+    if told:
+        raise ConfigError(f"estimator.options: {name} has none, so leave {', '.join(told)} out")
     return ESTIMATORS[name]
+
+
+def _brought(name: str, maker: Maker, options: dict[str, object]) -> EstimatorKind:
+    return EstimatorKind(
+        first_line(maker),
+        lambda model: brought_estimator(name, maker, model, options),
+        predicts=bool(getattr(maker, "predicts", True)),
+    )

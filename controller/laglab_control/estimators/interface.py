@@ -1,6 +1,6 @@
 """The one interface of all estimators."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple, Protocol, TypeVar
 
 from laglab_control.errors import ControlError, StampError
@@ -122,6 +122,11 @@ class Estimator(Protocol[S]):
         Any other may come as well. Nothing can be prepared by those that say nothing else.
         """
         return state
+
+    def ahead(self, state: S, inputs: Iterable[Vector]) -> Vector | None:
+        """The pose (3,) after `inputs`, those still to be in force, a tick each; None: as (29) has
+        it, with the model's f."""
+        return None
 
     def calibrated(self, state: S, robot: Ways) -> Ways:
         """The robot as it is known by now: the one that was told, of those that learn nothing."""

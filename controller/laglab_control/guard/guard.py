@@ -2,7 +2,7 @@
 explained any more, an alarm is raised and the estimate begins again from what is measured."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -157,6 +157,10 @@ class Guard(Estimator[Watched]):
         """The estimator's own."""
         inner = self._active(state).expect(state.state, s - state.origin)
         return state if inner is state.state else state._replace(state=inner)
+
+    def ahead(self, state: Watched, inputs: Iterable[Vector]) -> Vector | None:
+        """The estimator's own."""
+        return self._active(state).ahead(state.state, inputs)
 
     def calibrated(self, state: Watched, robot: Ways) -> Ways:
         """As whoever learns has it, also while it is given up."""

@@ -15,7 +15,7 @@ from laglab.extras import REHEARSING, require
 from laglab.progress import tracked
 from laglab.results.figures import picture_place, save
 from laglab.scenario import Scenario
-from laglab.scenario.tables.estimator import COMPARABLE
+from laglab.scenario.tables.estimator import COMPARABLE, comparable
 from laglab.studies.consistency import nth, samples, verdict
 from laglab.studies.consistency_report import consistency_table, draw_consistency
 
@@ -72,6 +72,7 @@ def _check(scenario: Scenario, seeds: int) -> None:
 
 
 def _known(name: str) -> str:
-    if name not in COMPARABLE:
-        raise ScenarioError(f"--judge: {name!r} is not one of {', '.join(COMPARABLE)}")
-    return name
+    try:
+        return comparable(name)
+    except ValueError as error:
+        raise ScenarioError(f"--judge: {error}") from None

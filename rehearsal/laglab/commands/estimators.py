@@ -1,14 +1,30 @@
-"""``laglab estimators``."""
+"""``laglab estimators`` and ``laglab laws``."""
+
+from collections.abc import Mapping
 
 from rich.console import Console
 
 from laglab.tables import plain_table
-from laglab_control import ESTIMATORS
+from laglab_control import ESTIMATORS, LAWS, installed_plugins
+from laglab_control.plugins import Group
 
 
 def estimators() -> None:
-    """List the estimators, and what each is."""
-    table = plain_table("name", "what it is")
-    for name, kind in ESTIMATORS.items():
-        table.add_row(name, kind.description)
-    Console().print(table)
+    """List the estimators, shipped and installed."""
+    _list("laglab.estimators", {name: kind.description for name, kind in ESTIMATORS.items()})
+
+
+def laws() -> None:
+    """List the control laws, shipped and installed."""
+    _list("laglab.laws", LAWS)
+
+
+def _list(group: Group, shipped: Mapping[str, str]) -> None:
+    table = plain_table()
+    for heading in ("name", "from", "what it is"):
+        table.add_column(heading, overflow="fold")
+    for name, description in shipped.items():
+        table.add_row(name, "laglab", description)
+    for plugin in installed_plugins(group):
+        table.add_row(*plugin)
+    Console().print(table, highlight=False, markup=False)

@@ -23,7 +23,8 @@ EstimatorsOption = Annotated[
     typer.Option(
         "--estimator",
         metavar="NAME",
-        help=f"The filter in the loop; further ones shadow it: {', '.join(ESTIMATORS)}.",
+        help=f"The filter in the loop; further ones shadow it: {', '.join(ESTIMATORS)}, a plug-in "
+        "or module:Class.",
         autocompletion=lambda: list(ESTIMATORS),
     ),
 ]
@@ -49,6 +50,8 @@ OWN: dict[str, Own] = {
     "duration": Own(float | None, "--duration"),
     "estimator.initial_covariance": Own(float | None, "--p0"),
     "estimator.initial_estimate": Own(str | None, "--initial-estimate", POSE),
+    "law.kind": Own(str | None, "--law", "NAME"),
+    "law.path": Own(str | None, "--path", "PATH"),
     "law.v_max": Own(float | None, "--v-max"),
     "law.omega_max": Own(float | None, "--omega-max"),
     "law.goal_tolerance": Own(float | None, "--goal-tolerance"),

@@ -13,7 +13,7 @@ from laglab.results.figures import save
 from laglab.results.place import REPORT_FILE
 from laglab.results.replaying import draw_replays, replayed_run, replays_table
 from laglab.results.run import SCENARIO_FILE, Run
-from laglab.results.shadows import collected, kept_rows, shadow_rows
+from laglab.results.shadows import collected, file_name, kept_rows, shadow_rows
 from laglab.results.writable import folder_place
 from laglab.scenario import load
 from laglab.scenario.tables.estimator import COMPARABLE
@@ -69,7 +69,8 @@ def replay(
     asked = {name: shadow_rows(told, name, session) for name in estimators}
     directory = folder_place("--out", out)
     replays = {
-        name: collected(kept_rows(rows, directory / f"{name}.csv")) for name, rows in asked.items()
+        name: collected(kept_rows(rows, directory / f"{file_name(name)}.csv"))
+        for name, rows in asked.items()
     }
     save(draw_replays(told, session, replays, trace, width), directory / "replay.png")
     if report:

@@ -16,6 +16,7 @@ from laglab.results.complete import Way
 from laglab.results.place import place
 from laglab.runs.rehearse import Transport
 from laglab.runs.robot_side import Setup
+from laglab.runs.station_side import check_parts
 from laglab.runs.whole import run_into
 from laglab.scenario import Scenario
 
@@ -74,6 +75,7 @@ def run(
         raise ScenarioError("--plant: a real robot does not wait: take --transport udp or serial")
     setup = Setup(plant, key, plant_key=plant_key)
     setup.check()
+    check_parts(scenario)
     way = Way("both", transport, plant or "fmu")
     with shown_live(scenario, way, live, open_) as page:
         directory = place(scenario, out, force)

@@ -11,6 +11,7 @@ from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, require
 from laglab.progress import tracked
 from laglab.results.figures import picture_place, save
+from laglab.scenario.tables.names import known_estimator
 from laglab.studies.trust import CONDITIONS, DEFAULT, fared, stations
 from laglab.studies.trust_report import draw_trust, scores, trust_table
 from laglab_control import ESTIMATORS
@@ -42,8 +43,10 @@ def trust(
     require(REHEARSING)
     picture_place(out)
     conditions = [_known(name) for name in only or CONDITIONS]
-    if estimator not in ESTIMATORS:
-        raise ScenarioError(f"--estimator: {estimator!r} is not one of {', '.join(ESTIMATORS)}")
+    try:
+        known_estimator(estimator)
+    except ValueError as error:
+        raise ScenarioError(f"--estimator: {error}") from None
     compared = stations(estimator)
     total = len(conditions) * len(compared) * seeds
     runs = fared(conditions, compared, seeds, workers or os.cpu_count() or 1)

@@ -1,5 +1,6 @@
 """A run as a MAT-file, for MATLAB, Octave and scipy.io.loadmat."""
 
+import re
 from typing import BinaryIO
 
 import numpy as np
@@ -41,5 +42,5 @@ def _cells(column: NDArray[np.generic]) -> NDArray[np.generic]:
 
 
 def _named(column: str) -> str:
-    """MATLAB's names have no hyphens, and 63 letters at most."""
-    return column.replace("-", "_")
+    """MATLAB's names are of letters, digits and underscores, and 63 of them at most."""
+    return re.sub(r"\W", "_", column)

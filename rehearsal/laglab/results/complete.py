@@ -1,6 +1,7 @@
 """From a record and an ending to a run: what every way of making one has in common."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -20,8 +21,10 @@ from laglab.results.shadows import (
     shadow_error,
     shadow_file,
     shadow_rows,
+    until_it_fails,
 )
-from laglab.results.summary import Errors, Final, Side, Summary, write_summary
+from laglab.results.summary import Errors, Final, Following, Side, Summary, write_summary
+from laglab.results.target import followed, target
 from laglab.runs.ending import Ending
 from laglab.scenario import Scenario
 from laglab.version import laglab_version
@@ -42,6 +45,8 @@ from laglab_gateway import (
 )
 from laglab_protocol import EndReason, Frame, decode
 from laglab_station import StationReport, heard, read_session
+
+CONVERGED = "converged", "did not converge"
 
 
 class Way(NamedTuple):
@@ -65,8 +70,13 @@ def complete(
         numbers = digest(trace_pieces(directory / TRACE_FILE), scenario.link.m)
     except TraceError as error:
         raise nothing_recorded(ending, str(error)) from None
-    compared = {name: _shadowed(scenario, name, directory) for name in scenario.estimator.compare}
-    summary = summarise(scenario, way, ending, numbers, compared)
+    failed: list[str] = []
+    compared = {
+        name: _shadowed(scenario, name, directory, failed) for name in scenario.estimator.compare
+    }
+    ending = replace(ending, warnings=(*ending.warnings, *failed))
+    following = followed(trace_pieces(directory / TRACE_FILE), target(scenario), numbers.rows)
+    summary = summarise(scenario, way, ending, numbers, compared, following)
     write_summary(summary, directory)
     run = Run(scenario, summary, directory)
     if figure:
@@ -83,11 +93,15 @@ def keep(scenario: Scenario, way: Way, ending: Ending, recorder: MemoryRecorder)
     session = list(heard(_frames(recorder.tlog))) if names else []
     shadows: dict[str, Shadow] = {}
     compared: dict[str, Errors | None] = {}
+    failed: list[str] = []
     for name in names:
-        rows = list(shadow_rows(scenario, name, session))
+        rows = list(until_it_fails(shadow_rows(scenario, name, session), failed.append))
         shadows[name] = collected(rows)
         compared[name] = shadow_error(rows, [trace], scenario.link.m)
-    summary = summarise(scenario, way, ending, digest([trace], scenario.link.m), compared)
+    numbers = digest([trace], scenario.link.m)
+    following = followed([trace], target(scenario), numbers.rows)
+    ending = replace(ending, warnings=(*ending.warnings, *failed))
+    summary = summarise(scenario, way, ending, numbers, compared, following)
     return Run(scenario, summary, None, Kept(trace, _tables(recorder), shadows))
 
 
@@ -117,8 +131,10 @@ def _frames(records: Iterable[tuple[int, bytes]]) -> Iterable[Frame]:
         yield frame
 
 
-def _shadowed(scenario: Scenario, name: str, directory: Path) -> Errors | None:
-    rows = shadow_rows(scenario, name, read_session(directory / TLOG_FILE))
+def _shadowed(scenario: Scenario, name: str, directory: Path, failed: list[str]) -> Errors | None:
+    rows = until_it_fails(
+        shadow_rows(scenario, name, read_session(directory / TLOG_FILE)), failed.append
+    )
     written = kept_rows(rows, shadow_file(directory, name))
     pieces = trace_pieces(directory / TRACE_FILE)
     return shadow_error(written, pieces, scenario.link.m)
@@ -130,13 +146,15 @@ def summarise(
     ending: Ending,
     numbers: Digest,
     compared: dict[str, Errors | None],
+    following: Following | None = None,
 ) -> Summary:
     """The run in numbers."""
     end, outcome = numbers.end, ending.outcome
     ticks = round(float(end["time"][-1]) / scenario.sample_time)
     completed = outcome is not None and outcome.reason is EndReason.COMPLETED
-    converged = completed and has_converged(end, scenario.goal)
-    final = _final(end, scenario)
+    wanted = target(scenario).poses(end["tick"])
+    converged = completed and has_converged(end, wanted)
+    final = _final(end, wanted)
     seconds = ending.loop_seconds
     in_loop = {scenario.estimator.kind: numbers.rms_error} if compared else {}
     return Summary(
@@ -146,6 +164,7 @@ def summarise(
         transport=way.transport,
         plant=way.plant,
         estimator=scenario.estimator.kind,
+        law=scenario.law.kind,
         n=scenario.link.n,
         m=scenario.link.m,
         seed=scenario.seed,
@@ -156,13 +175,14 @@ def summarise(
         compare=in_loop | compared,
         outcome=outcome.reason.name.lower() if outcome else None,
         converged=converged,
+        following=following,
         wall_time_s=seconds,
         real_time_factor=ticks * scenario.sample_time / seconds if seconds else None,
         link=ending.link,
         timing=ending.timing,
         station=ending.station,
         warnings=ending.warnings,
-        verdict=_verdict(ending, final, converged, ticks, numbers.seen == "measured"),
+        verdict=_verdict(ending, final, converged, ticks, numbers.seen == "measured", following),
     )
 
 
@@ -173,12 +193,10 @@ def _after_alarms(station: StationReport | None) -> str:
     return f" after {times}, the first at tick {station.alarms[0].tick}"
 
 
-def _final(end: Trace, scenario: Scenario) -> Final:
+def _final(end: Trace, wanted: NDArray[np.float64]) -> Final:
     """At the last tick; of what is told later or not at all, the last that is known."""
-    pose = robot_pose(end)
-    known = pose[~np.isnan(pose).any(axis=1)][-1:]
-    rho, theta_error = goal_errors(known, scenario.goal) if len(known) else ([np.nan], [np.nan])
-    numbers = rho[0], theta_error[0], _last(end["v"]), _last(end["omega"])
+    rho, theta_error = goal_errors(robot_pose(end), wanted)
+    numbers = _last(rho), _last(theta_error), _last(end["v"]), _last(end["omega"])
     return Final(*(float(number) if abs(number) < float("inf") else None for number in numbers))
 
 
@@ -187,7 +205,14 @@ def _last(column: NDArray[np.float64]) -> float:
     return float(there[-1]) if len(there) else np.nan
 
 
-def _verdict(ending: Ending, final: Final, converged: bool, ticks: int, measured: bool) -> str:
+def _verdict(
+    ending: Ending,
+    final: Final,
+    converged: bool,
+    ticks: int,
+    measured: bool,
+    following: Following | None,
+) -> str:
     if ending.outcome is None:
         return f"cut short at tick {ticks}: {ending.problem}"
     tick = ending.outcome.tick
@@ -197,14 +222,18 @@ def _verdict(ending: Ending, final: Final, converged: bool, ticks: int, measured
         case EndReason.INTERRUPTED:
             return f"interrupted at tick {tick}"
         case EndReason.FAILED:
-            return f"stopped at tick {tick}: the other side failed"
+            return f"stopped at tick {tick}: {ending.problem or 'the other side failed'}"
         case EndReason.DISPLACED:
             return f"stopped at tick {tick}: another station has taken over"
     stopped = "after an emergency stop: " if ending.emergency_stop else ""
-    word = (
-        stopped + ("converged" if converged else "did not converge") + _after_alarms(ending.station)
-    )
+    reached = ("follows its path", "does not follow its path") if following else CONVERGED
+    word = stopped + reached[not converged] + _after_alarms(ending.station)
     seen = " as measured" if measured else ""
+    if following:
+        return (
+            f"{word}: {following.rms:.3g} m from it (RMS), {following.largest:.3g} m at most, over "
+            f"the second half{seen}"
+        )
     if final.rho is None or final.theta_error is None:
         return f"{word}: where the robot is at the end is not known"
     return f"{word}: at the end ρ = {final.rho:.3g} m, θ error = {final.theta_error:.3g} rad{seen}"

@@ -13,8 +13,8 @@ DISTANCE_BOUND = 0.06
 HEADING_BOUND = 0.05
 LAST_SECOND = 1.0
 Array = NDArray[np.float64]
-Goal = tuple[float, float, float]
-"""x [m], y [m], theta [rad]."""
+Goal = tuple[float, float, float] | Array
+"""x [m], y [m], theta [rad]; or such a pose for each, shape (..., 3)."""
 
 
 def wrapped(angles: Array) -> Array:
@@ -68,9 +68,8 @@ def pose_difference(poses: Array, others: Array) -> Array:
 
 def goal_errors(pose: Array, goal: Goal) -> tuple[Array, Array]:
     """Distance to the goal ρ [m] and heading error [rad] of poses, shape (..., 3)."""
-    x, y, theta = goal
-    rho = np.hypot(pose[..., 0] - x, pose[..., 1] - y)
-    return rho, wrapped(pose[..., 2] - theta)
+    off = pose - np.asarray(goal)
+    return np.hypot(off[..., 0], off[..., 1]), wrapped(off[..., 2])
 
 
 def at_goal(pose: Array, goal: Goal) -> NDArray[np.bool_]:
@@ -91,11 +90,11 @@ def has_converged(trace: Trace, goal: Goal) -> bool:
 
     Where the pose is measured, in the second's mean: the sensor's noise does not move the robot.
     """
-    pose = robot_pose(trace)[last_second(trace["time"])]
+    off = pose_difference(robot_pose(trace), np.asarray(goal))[last_second(trace["time"])]
     if is_measured(trace):
-        pose = pose[~np.isnan(pose).any(axis=1)]
-        pose = pose.mean(axis=0, keepdims=True) if len(pose) else pose
-    return len(pose) > 0 and bool(at_goal(pose, goal).all())
+        off = off[~np.isnan(off).any(axis=1)]
+        off = off.mean(axis=0, keepdims=True) if len(off) else off
+    return len(off) > 0 and bool(at_goal(off, (0.0, 0.0, 0.0)).all())
 
 
 class RmsError:

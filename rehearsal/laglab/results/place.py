@@ -6,7 +6,6 @@ from pathlib import Path
 from laglab.errors import PlaceError
 from laglab.results.figures import FIGURE_FILE
 from laglab.results.run import SCENARIO_FILE
-from laglab.results.shadows import shadow_file
 from laglab.results.summary import SUMMARY_FILE
 from laglab.results.writable import folder_place
 from laglab.scenario import Scenario
@@ -32,7 +31,7 @@ def place(scenario: Scenario, out: Path | None, force: bool = False, suffix: str
                 "another folder, or say --force"
             )
     try:
-        shadows = directory.glob(shadow_file(directory, "*").name)
+        shadows = directory.glob("shadow-*.csv")
         for old in [*(directory / name for name in OURS), *shadows]:
             old.unlink(missing_ok=True)
         text = scenario.to_toml(directory)

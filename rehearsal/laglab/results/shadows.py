@@ -1,9 +1,10 @@
 """Estimators that shadow a run: what they say to the record of it."""
 
 import csv
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from itertools import islice
 from pathlib import Path
+from urllib.parse import quote
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ from laglab.results.summary import Errors
 from laglab.results.whole import whole_file
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario, changed
+from laglab_control import PluginFailedError, without_blind_guard
 from laglab_gateway import Trace, format_row
 from laglab_station import SessionTick, ShadowRow, shadow
 
@@ -26,7 +28,12 @@ Shadow = dict[str, NDArray[np.float64]]
 
 def shadow_file(directory: Path, name: str) -> Path:
     """Where a run keeps what the estimator `name` said."""
-    return directory / f"shadow-{name}.csv"
+    return directory / f"shadow-{file_name(name)}.csv"
+
+
+def file_name(name: str) -> str:
+    """What stands for an estimator's name in a file's, which `module:Class` cannot everywhere."""
+    return quote(name, safe="")
 
 
 def shadow_rows(
@@ -36,8 +43,18 @@ def shadow_rows(
 
     Raises: ScenarioError, when there is no such estimator.
     """
-    config = station_config(changed(scenario, {"estimator.kind": name}))
+    own = scenario.estimator.kind == name
+    told = {} if own else {"estimator.kind": name, "estimator.options": {}}
+    config = without_blind_guard(station_config(changed(scenario, told)))
     return shadow(config, session, scenario.link.playout.measurement)
+
+
+def until_it_fails(rows: Iterable[ShadowRow], fail: Callable[[str], None]) -> Iterator[ShadowRow]:
+    """All of them, or those before what somebody brought failed, which is told."""
+    try:
+        yield from rows
+    except PluginFailedError as error:
+        fail(str(error))
 
 
 def kept_rows(rows: Iterable[ShadowRow], path: Path) -> Iterator[ShadowRow]:

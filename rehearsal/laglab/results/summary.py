@@ -12,7 +12,7 @@ from laglab_gateway import TLOG_FILE, LinkReport, TimingReport
 from laglab_station import StationReport
 
 SUMMARY_FILE = "summary.json"
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 
 Side = Literal["both", "robot", "station"]
 Seen = Literal["true", "measured"]
@@ -27,8 +27,16 @@ class Errors(Struct, frozen=True):
     theta: float
 
 
+class Following(Struct, frozen=True):
+    """How far the robot was from where its path wanted it, over the second half of the run [m]."""
+
+    rms: float
+    largest: float
+
+
 class Final(Struct, frozen=True):
-    """The robot at the last tick: errors to the goal [m, rad], speeds in force [m/s, rad/s].
+    """The robot at the last tick: errors to the goal, or to where its path wanted it [m, rad],
+    speeds in force [m/s, rad/s].
 
     None where nothing is known, or it is not finite.
     """
@@ -53,6 +61,7 @@ class Summary(Struct, frozen=True, kw_only=True):
     plant: str
     """`fmu`, or the address of the real robot; of a station alone, unknown."""
     estimator: str
+    law: str
     n: int
     m: int
     seed: int
@@ -66,6 +75,9 @@ class Summary(Struct, frozen=True, kw_only=True):
     outcome: str | None
     """`completed`, `diverged`, `interrupted`, `failed`, `displaced`; None: it was cut short."""
     converged: bool
+    """At the goal, or where its path wanted it, at every tick of the last second."""
+    following: Following | None
+    """None where there was no path."""
     wall_time_s: float
     real_time_factor: float | None
     link: LinkReport | None

@@ -2,7 +2,7 @@
 
 from rich.table import Table
 
-from laglab.results.summary import Errors, Summary
+from laglab.results.summary import Errors, Following, Summary
 from laglab.tables import plain_table
 from laglab_gateway import DirectionReport, LinkReport, TimingReport
 from laglab_station import StationReport
@@ -25,13 +25,15 @@ def summary_rows(summary: Summary) -> dict[str, str]:
     """Name → value, as far as there is something to say."""
     seen = " (measured)" if summary.pose == "measured" else ""
     estimated = summary.compare or {summary.estimator: summary.rms_error}
-    final = summary.final
+    final, following = summary.final, summary.following
     return {
         "scenario": f"{summary.scenario} (seed {summary.seed}, {summary.transport})",
         "estimator": summary.estimator,
+        **({} if summary.law == "polar" else {"law": summary.law}),
         "delays n, m": f"{summary.n} and {summary.m} ticks",
         f"pose error at the end{seen}": f"ρ {_number(final.rho)} m, "
         f"θ {_number(final.theta_error)} rad",
+        **({f"distance to the path{seen}": _distance(following)} if following else {}),
         "speeds at the end": f"v {_number(final.v)} m/s, ω {_number(final.omega)} rad/s",
         **{f"RMS error of {name}{seen}": _errors(errors) for name, errors in estimated.items()},
         **(_link_rows(summary.link) if summary.link else {}),
@@ -43,6 +45,11 @@ def summary_rows(summary: Summary) -> dict[str, str]:
 
 def _number(value: float | None) -> str:
     return "?" if value is None else f"{value:.3g}"
+
+
+def _distance(following: Following) -> str:
+    rms, largest = following.rms, following.largest
+    return f"RMS {rms:.3g} m, at most {largest:.3g} m, over the second half"
 
 
 def _errors(errors: Errors | None) -> str:

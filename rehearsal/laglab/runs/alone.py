@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from laglab.runs.clock import LoopClock
 from laglab.runs.ending import Ending
-from laglab.runs.errors import LINK_LOST, SIDE_ERRORS
+from laglab.runs.errors import CUT_SHORT, SIDE_ERRORS
 from laglab.runs.pauses import short_pauses
 from laglab.runs.robot_side import OpenRobot
 from laglab_gateway import Outcome, Surroundings
@@ -75,7 +75,7 @@ def answer_alone(
 
 
 def _cut_short(error: Exception, clock: LoopClock, warnings: list[str]) -> Ending:
-    begun = clock.seconds > 0 or isinstance(error, LINK_LOST)
+    begun = clock.seconds > 0 or isinstance(error, CUT_SHORT)
     return Ending(
         problem=str(error),
         begun=begun and not isinstance(error, SettingsError),

@@ -3,8 +3,10 @@
 import math
 from collections.abc import Callable, Iterable
 
+import numpy as np
 from msgspec import Struct
 
+from laglab.results.target import target
 from laglab.scenario import Scenario
 from laglab_gateway import (
     FOLLOWED,
@@ -21,7 +23,8 @@ class Glance(Struct, frozen=True):
     """What is known at a tick; None where nothing is."""
 
     rho: float | None
-    """Distance to the goal [m], as measured, or else as estimated, where the pose is not known."""
+    """Distance to the goal, or to where the path wants it [m], as measured, or else as estimated,
+    where the pose is not known."""
     sigma: float | None
     """Standard deviation that the station claims of the position [m]."""
     delays: tuple[int | None, int | None]
@@ -51,7 +54,7 @@ class Glances(Recorder):
     """Keeps the last of everything."""
 
     def __init__(self, scenario: Scenario) -> None:
-        self._x, self._y, _ = scenario.goal
+        self._target = target(scenario)
         self._patience = scenario.safety.link_timeout
         self._row: TraceRow | None = None
         self._claim: ClaimRow | None = None
@@ -89,7 +92,8 @@ class Glances(Recorder):
     def _rho(self, row: TraceRow) -> float | None:
         for x, y in ((row.x, row.y), (row.x_meas, row.y_meas), (row.x_est, row.y_est)):
             if x is not None and y is not None:
-                return math.hypot(x - self._x, y - self._y)
+                ((wanted_x, wanted_y, _),) = self._target.poses(np.array([float(row.tick)]))
+                return math.hypot(x - wanted_x, y - wanted_y)
         return None
 
     def _state(self, time: float) -> str:

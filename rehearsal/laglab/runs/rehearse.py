@@ -13,7 +13,7 @@ from laglab.live import fed
 from laglab.runs.child import LOOK_UP, Child, Inbox, Letter, started
 from laglab.runs.clock import LoopClock
 from laglab.runs.ending import Ending
-from laglab.runs.errors import LINK_LOST, SIDE_ERRORS
+from laglab.runs.errors import CUT_SHORT, SIDE_ERRORS
 from laglab.runs.glance import Told, watched
 from laglab.runs.inline import InlineLink
 from laglab.runs.pauses import short_pauses
@@ -72,7 +72,7 @@ def rehearse_inline(
             with short_pauses():
                 served = robot.serve(around)
     except SIDE_ERRORS as error:
-        begun = clock.seconds > 0 or isinstance(error, LINK_LOST)
+        begun = clock.seconds > 0 or isinstance(error, CUT_SHORT)
         return Ending(problem=str(error), begun=begun, loop_seconds=clock.seconds)
     report = station.report()
     return Ending(
@@ -223,6 +223,7 @@ class _Rehearsal:
         self._ending = replace(self._ending, begun=self._ending.begun or begun)
 
     def _summed_up(self) -> Ending:
-        if self._ending.outcome is not None:
+        outcome = self._ending.outcome
+        if outcome is not None and outcome.reason is not EndReason.FAILED:
             return self._ending
         return replace(self._ending, problem="; ".join(self._problems))

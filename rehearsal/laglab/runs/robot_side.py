@@ -114,10 +114,10 @@ def robot_parameters(scenario: Scenario) -> laglab_fmu.RobotParameters:
 def shown_parameters(scenario: Scenario) -> Parameters:
     """What a ground station reads: the gateway's own, the law's gains, the noise [SI units]."""
     noise = scenario.plant.measurement_variance if scenario.noise else (0.0, 0.0, 0.0)
+    law = scenario.law
+    gains = {"LAW_GAMMA": law.gamma, "LAW_LAMBDA": law.lambda_, "LAW_H": law.h}
     others = {
-        "LAW_GAMMA": scenario.law.gamma,
-        "LAW_LAMBDA": scenario.law.lambda_,
-        "LAW_H": scenario.law.h,
+        **(gains if law.kind == "polar" else {}),
         "NOISE_WHEEL": scenario.plant.wheel_noise_variance if scenario.noise else 0.0,
         **dict(zip(("NOISE_X", "NOISE_Y", "NOISE_THETA"), noise, strict=True)),
     }

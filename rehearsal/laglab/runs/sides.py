@@ -6,7 +6,7 @@ from pathlib import Path
 from laglab.live import fed
 from laglab.runs.child import Tell
 from laglab.runs.clock import LoopClock
-from laglab.runs.errors import LINK_LOST, SIDE_ERRORS
+from laglab.runs.errors import CUT_SHORT, SIDE_ERRORS
 from laglab.runs.glance import watched
 from laglab.runs.pauses import short_pauses
 from laglab.runs.reports import (
@@ -57,7 +57,7 @@ def robot_side(order: Order, tell: Tell) -> None:
         reason, tick = served.outcome
         tell(Finished(reason, tick, clock.seconds, served.link, served.timing))
     except SIDE_ERRORS as error:
-        tell(Failed(str(error), begun or isinstance(error, LINK_LOST)))
+        tell(Failed(str(error), begun or isinstance(error, CUT_SHORT)))
 
 
 def station_side(order: Order, tell: Tell) -> None:
@@ -75,7 +75,7 @@ def station_side(order: Order, tell: Tell) -> None:
             run_station(station, listener, scenario.silence_timeout)
         tell(Answered(station.report()))
     except SIDE_ERRORS as error:
-        tell(Failed(str(error), begun or isinstance(error, LINK_LOST)))
+        tell(Failed(str(error), begun or isinstance(error, CUT_SHORT)))
 
 
 def _setup(order: Order) -> Setup:

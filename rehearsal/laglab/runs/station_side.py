@@ -4,13 +4,15 @@ import math
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
 from laglab.scenario import Scenario
-from laglab_control import Controller, PolarLaw, RobotModel, SpeedLimits, StationConfig
+from laglab_control import Controller, Law, PolarLaw, RobotModel, SpeedLimits, StationConfig
+from laglab_control.laws import brought_law, tracking_law
 from laglab_protocol import STATION_COMPONENT, STATION_SYSTEM, Codec, Receiver, Sender, Settings
 from laglab_station import Station
 
@@ -27,12 +29,35 @@ def robot_model(scenario: Scenario) -> RobotModel:
     )
 
 
+def control_law(scenario: Scenario) -> Law:
+    """Raises PluginError or ConfigError when it cannot be made."""
+    told, path = scenario.law, scenario.path
+    if told.kind == "polar":
+        return PolarLaw(goal=scenario.goal, **told.of(PolarLaw))
+    if told.kind == "tracking":
+        assert path is not None, "the table has seen to it"
+        return tracking_law(path, told.options)
+    return brought_law(told.kind, scenario.goal, told.options | ({"path": path} if path else {}))
+
+
+def check_parts(scenario: Scenario) -> None:
+    """Whatever somebody brought can be made here, the filters beside the loop too.
+
+    Raises PluginError or ConfigError.
+    """
+    config = station_config(scenario)
+    Controller(config).start()
+    for name in scenario.estimator.compare:
+        Controller(replace(config, estimator=name, estimator_options={}, guard=False)).start()
+
+
 def station_config(scenario: Scenario) -> StationConfig:
     """The remote station's side."""
     return StationConfig(
         estimator=scenario.estimator.kind,
+        estimator_options=scenario.estimator.options,
         model=robot_model(scenario),
-        law=PolarLaw(goal=scenario.goal, **scenario.law.of(PolarLaw)),
+        law=control_law(scenario),
         limits=SpeedLimits(**scenario.law.of(SpeedLimits)),
         goal=scenario.goal,
         initial_estimate=scenario.first_estimate(),

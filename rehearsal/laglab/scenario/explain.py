@@ -20,7 +20,13 @@ def explained(scenario: Scenario) -> str:
 
 def spelled(value: object) -> str:
     """As in a file; what is not there, is not set."""
-    return NOT_SET if value is None else tomlkit.item(plain(value)).as_string()
+    if value is None:
+        return NOT_SET
+    if isinstance(value, dict):
+        table = tomlkit.inline_table()
+        table.update(plain(value))
+        return str(table.as_string())
+    return str(tomlkit.item(plain(value)).as_string())
 
 
 def _table(row: Row) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from laglab.errors import ScenarioError
+from laglab.scenario import paths
 from laglab.scenario.model import Scenario
 from laglab.scenario.overrides import Overrides, put
 from laglab.scenario.toml import parsed
@@ -84,8 +85,11 @@ def _read(reference: str) -> tuple[dict[str, Any], Path]:
 
 
 def _anchored(fields: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """With the path in it, which is relative to the file's folder, as one that can be opened."""
+    """With the files that it names, relative to its folder, as ones that can be opened."""
     match fields:
         case {"link": {"replay": str(replay)}}:
             fields["link"]["replay"] = str(folder / replay)
+    match fields:
+        case {"law": {"path": str(path)}}:
+            fields["law"]["path"] = paths.anchored(path, folder)
     return fields

@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+import laglab_control as control
 from laglab.errors import ScenarioError
+from laglab.scenario import paths
 from laglab.scenario.overrides import Overrides
 from laglab.scenario.tables.estimator import EstimatorTable
 from laglab.scenario.tables.law import LawTable
@@ -68,7 +70,7 @@ class Scenario(Table):
     estimator: Annotated[
         EstimatorTable, described("-", "The filter in the loop, and its prior.")
     ] = EstimatorTable()
-    law: Annotated[LawTable, described("-", "The control law's gains and limits.")] = LawTable()
+    law: Annotated[LawTable, described("-", "The control law, and its limits.")] = LawTable()
     link: Annotated[
         LinkTable, described("-", "The way between the two sides: its delays, and more.")
     ] = LinkTable()
@@ -92,7 +94,17 @@ class Scenario(Table):
         for key, pose in poses.items():
             if is_far(pose, self.goal):
                 raise ValueError(f"{key}: must be within {FAR:g} m of the goal, not {list(pose)}")
+        if self.path is not None:
+            for x, y in self.path.outline().tolist():
+                if is_far((x, y, 0.0), self.goal):
+                    raise ValueError(f"law.path: must be within {FAR:g} m of the goal")
         return self
+
+    @property
+    def path(self) -> control.Path | None:
+        """What the robot is to follow; None: it is to come to the goal."""
+        told = self.law.path
+        return None if told is None else paths.reference_path(told, self.goal[:2])
 
     @property
     def last_tick(self) -> int | None:
@@ -107,9 +119,10 @@ class Scenario(Table):
 
     @property
     def gist(self) -> str:
-        """Filter, delays and noise, in a few words."""
+        """Law, unless it is the polar one, filter, delays and noise, in a few words."""
         noise = "on" if self.noise else "off"
-        return f"{self.estimator.kind}, n = {self.link.n}, m = {self.link.m}, noise {noise}"
+        law = "" if self.law.kind == "polar" else f"{self.law.kind}, "
+        return f"{law}{self.estimator.kind}, n = {self.link.n}, m = {self.link.m}, noise {noise}"
 
     def first_estimate(self) -> NDArray[np.float64]:
         """x̂_0, shape (3,): the true start, a pose, or drawn from N(start, P_0) by the seed."""
@@ -130,6 +143,8 @@ class Scenario(Table):
         fields: dict[str, Any] = plain(self.model_dump(by_alias=True, exclude_none=True))
         if folder is not None and self.link.replay is not None:
             fields["link"]["replay"] = os.path.relpath(self.link.replay, folder.resolve())
+        if folder is not None and self.law.path is not None:
+            fields["law"]["path"] = paths.relative(self.law.path, folder)
         return fields
 
     @classmethod
@@ -145,9 +160,9 @@ class Scenario(Table):
 
 
 def plain(value: Any) -> Any:
-    """Without tuples and paths, which TOML does not have."""
+    """Without tuples and paths, which TOML does not have, and without tables of nothing."""
     if isinstance(value, dict):
-        return {key: plain(item) for key, item in value.items()}
+        return {key: plain(item) for key, item in value.items() if item != {}}
     if isinstance(value, Path):
         return str(value)
     return [plain(item) for item in value] if isinstance(value, list | tuple) else value

@@ -72,6 +72,7 @@ def why_one_by_one(scenario: Scenario) -> str | None:
         "there is no play-out for many robots (playout)": bool(
             link.playout.command or link.playout.measurement
         ),
+        f"there is no law {scenario.law.kind} for many robots": scenario.law.kind != "polar",
         "somebody moves the robot (plant.event)": bool(scenario.plant.event),
         "the run does not end by itself (duration)": scenario.last_tick is None,
         "the clock paces it (pace)": scenario.pace != "lockstep",

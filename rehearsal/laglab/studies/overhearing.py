@@ -8,7 +8,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab_control import Applied, Control, Controller, Echo, Measured, normalised_squared
+from laglab_control import (
+    Applied,
+    Control,
+    Controller,
+    Echo,
+    Measured,
+    StationConfig,
+    normalised_squared,
+)
 
 Array = NDArray[np.float64]
 NOTHING = np.full((3, 3), np.nan)
@@ -53,8 +61,11 @@ class Overhearing(Controller):
 
     @cached_property
     def _controllers(self) -> dict[str, Controller]:
-        configs = {name: replace(self.config, estimator=name, guard=False) for name in self.others}
+        configs = {name: self._config_of(name) for name in self.others}
         return {name: Controller(config) for name, config in configs.items()}
+
+    def _config_of(self, name: str) -> StationConfig:
+        return replace(self.config, estimator=name, estimator_options={}, guard=False)
 
     def start(self) -> Control:
         """Of all of them."""

@@ -84,7 +84,7 @@ class Scene:
             for path, each, name in zip(paths, told, names, strict=True)
         ]
         for each in self._robots:
-            fit(each.axes, [one.pose for one in told], told[0].scenario.goal)
+            fit(each.axes, [one.pose for one in told], told[0].target)
             each.axes.set_adjustable("box")
         self._draw_headings(panels["heading"], names)
         self._cursor = panels["heading"].axvline(0.0, color=BLACK, linewidth=0.8)
@@ -129,7 +129,7 @@ class _Robot:
         pose = told.pose
         axes.plot(*pose[:, :2].T, color=PALE, linewidth=0.8)
         (self._trail,) = axes.plot([], [], color=BLUE, linewidth=1.2)
-        mark_ends(axes, pose[:1], told.scenario.goal)
+        mark_ends(axes, pose[:1], told.target)
         self._body = axes.fill([0, 0], [0, 0], color=BLACK, linewidth=0, zorder=5)[0]
         self._guess = axes.fill(
             [0, 0], [0, 0], facecolor="none", edgecolor=GREY, linewidth=0.8, zorder=6

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from laglab.results.figures.panels import COMPONENTS, SPEEDS, around, marked
 from laglab.results.figures.plane import draw_headings, fit, mark_ends
@@ -89,12 +90,16 @@ def _draw(axes: Axes, name: str, told: Sequence[Shown], names: Sequence[str], un
     if name in COMPONENTS:
         i = COMPONENTS.index(name)
         poses = np.concatenate([each.pose[:, i] for each in told])
-        around(axes, poses, *{each.scenario.goal[i] for each in told})
+        around(axes, poses, *{extreme for each in told for extreme in _extremes(each.wanted[:, i])})
     starts, ends = zip(*((each.time * each.clock.seconds)[[0, -1]] for each in told), strict=True)
     axes.set_xlim(min(starts) / unit.seconds, max(*ends, max(starts) + 1e-3) / unit.seconds)
     axes.set(xlabel=unit.label, ylabel=LABELS.get(name, name))
     if name in FROM_NOTHING:
         axes.set_ylim(0, max(1.1 * axes.dataLim.y1, FROM_NOTHING[name]))
+
+
+def _extremes(values: NDArray[np.float64]) -> tuple[float, float]:
+    return float(values.min()), float(values.max())
 
 
 FROM_NOTHING = {"error": 1e-6, **dict.fromkeys(DIRECTIONS, 1.0)}
@@ -112,8 +117,8 @@ def _draw_paths(axes: Axes, told: Sequence[Shown], names: Sequence[str]) -> None
         pose = each.pose
         marked(axes, pose[:, 0], pose[:, 1], look, number, name)
         draw_headings(axes, pose[np.isfinite(pose).all(axis=1)], look.color)
-    mark_ends(axes, told[0].pose[:1], told[0].scenario.goal)
-    fit(axes, [each.pose for each in told], told[0].scenario.goal)
+    mark_ends(axes, told[0].pose[:1], told[0].target)
+    fit(axes, [each.pose for each in told], told[0].target)
     legend(axes)
 
 

@@ -35,8 +35,9 @@ def draw_component(axes: Axes, shown: Shown, i: int) -> None:
     if shown.is_estimated:
         estimate = shown.estimate[:, i]
         axes.plot(shown.time, estimate, color=BLUE, linestyle=(0, (3, 1)), label="estimated")
-    axes.axhline(shown.scenario.goal[i], color=GREY, linestyle=":", linewidth=0.8, label="goal")
-    around(axes, shown.pose[:, i], shown.scenario.goal[i])
+    wanted, name = shown.wanted[:, i], "goal" if shown.target.path is None else "path"
+    axes.plot(shown.time, wanted, color=GREY, linestyle=":", linewidth=0.8, label=name)
+    around(axes, shown.pose[:, i], float(wanted.min()), float(wanted.max()))
     axes.set_ylabel(COMPONENTS[i])
 
 

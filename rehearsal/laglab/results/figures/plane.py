@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from laglab.results.figures.shown import Shown
+    from laglab.results.target import Target
 
 Array = NDArray[np.float64]
 
@@ -35,8 +36,8 @@ def draw_path(axes: Axes, shown: Shown) -> None:
         axes.plot(*shown.estimate[:, :2].T, color=BLUE, linestyle=(0, (3, 1)), label="estimated")
     way = _way(shown)
     draw_headings(axes, way)
-    mark_ends(axes, way, shown.scenario.goal)
-    fit(axes, [_framing(shown)], shown.scenario.goal)
+    mark_ends(axes, way, shown.target)
+    fit(axes, [_framing(shown)], shown.target)
     legend(axes)
 
 
@@ -84,12 +85,16 @@ def along(poses: Array, count: int) -> NDArray[np.intp]:
     return np.unique(np.searchsorted(way, wanted).clip(0, len(poses) - 1))
 
 
-def mark_ends(axes: Axes, poses: Array, goal: tuple[float, float, float]) -> None:
-    """Where it began, and where it is to go."""
+def mark_ends(axes: Axes, poses: Array, target: Target) -> None:
+    """Where it began, and where it is to go: to the goal or along its path."""
     if len(poses):
         axes.plot(*poses[0, :2], "o", color=BLACK, markerfacecolor="white", label="start", zorder=4)
+    if target.path is not None:
+        way = target.outline().T
+        axes.plot(*way, color=GREEN, linestyle=":", linewidth=1.4, label="path", zorder=1.8)
+        return
     axes.plot(
-        *goal[:2],
+        *target.goal[:2],
         "*",
         color=BLACK,
         markerfacecolor=GREEN,
@@ -100,9 +105,9 @@ def mark_ends(axes: Axes, poses: Array, goal: tuple[float, float, float]) -> Non
     )
 
 
-def fit(axes: Axes, paths: list[Array], goal: tuple[float, float, float]) -> None:
-    """Equal axes around all of them and the goal."""
-    places = np.concatenate([*(path[:, :2] for path in paths), [goal[:2]]])
+def fit(axes: Axes, paths: list[Array], target: Target) -> None:
+    """Equal axes around all of them, and where they were to lead."""
+    places = np.concatenate([*(path[:, :2] for path in paths), target.outline()])
     places = places[np.isfinite(places).all(axis=1)]
     low, high = places.min(axis=0), places.max(axis=0)
     middle, half = (low + high) / 2, np.maximum((high - low) / 2 * (1 + 2 * MARGIN), SMALLEST)

@@ -16,6 +16,7 @@ from laglab.results.numbers import (
     robot_pose,
     shadow_estimates,
 )
+from laglab.results.target import Target, target
 from laglab.scenario import Scenario
 from laglab_gateway import CLAIMS_FILE, Trace
 
@@ -84,6 +85,16 @@ class Shown(NamedTuple):
     def shadow_error(self, name: str) -> Array:
         """(ticks, 3): the same of an estimator that shadowed the loop."""
         return deviation(self.trace, shadow_estimates(self.trace, name))
+
+    @property
+    def wanted(self) -> Array:
+        """(ticks, 3): the goal, or where the path wanted the robot."""
+        return self.target.poses(self.trace["tick"])
+
+    @property
+    def target(self) -> Target:
+        """Where the robot was to be."""
+        return target(self.scenario)
 
     @property
     def is_estimated(self) -> bool:

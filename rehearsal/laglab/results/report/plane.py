@@ -14,6 +14,7 @@ from laglab.results.report.plots import (
     legend_above,
 )
 from laglab.results.report.sources import Sources
+from laglab.results.target import Target, target
 from laglab.scenario import Scenario
 
 
@@ -58,14 +59,7 @@ def path_plot(
     )
     tips = [("t", "@time{0.00} s"), ("x̂", "@x_est{0.000} m"), ("ŷ", "@y_est{0.000} m")]
     plot.add_tools(HoverTool(renderers=[path], tooltips=tips, visible=False))
-    plot.scatter(
-        [scenario.goal[0]],
-        [scenario.goal[1]],
-        marker="star",
-        size=15,
-        color=GREEN,
-        legend_label="goal",
-    )
+    _mark_target(plot, target(scenario))
     plot.patch("x", "y", source=sources.robot, color=BLACK, fill_alpha=0.15, line_width=2)
     plot.patch(
         "x",
@@ -88,3 +82,12 @@ def path_plot(
     legend_above(plot)
     plot.legend[0].ncols = 3
     return plot
+
+
+def _mark_target(plot: figure, of: Target) -> None:
+    """The goal, or the path that is to be followed."""
+    x, y = of.outline().T.tolist()
+    if of.path is None:
+        plot.scatter(x, y, marker="star", size=15, color=GREEN, legend_label="goal")
+    else:
+        plot.line(x, y, color=GREEN, line_dash="dotted", line_width=2, legend_label="path")

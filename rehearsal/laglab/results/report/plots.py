@@ -86,7 +86,7 @@ def time_plots(
     plots["goal"] = _lines(
         sources,
         axes,
-        "to the goal: ρ [m], heading [rad]",
+        f"to the {'goal' if scenario.path is None else 'path'}: ρ [m], heading [rad]",
         [
             Line("rho", "ρ", BLACK),
             Line("turn", "heading error", BLUE, "dashed"),

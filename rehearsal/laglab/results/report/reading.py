@@ -21,6 +21,7 @@ from laglab.results.report.tables import (
     timing_columns,
 )
 from laglab.results.run import Run
+from laglab.results.target import target
 from laglab_gateway import ARRIVALS_FILE, CLAIMS_FILE, LINK_FILE, ROWS, TIMING_FILE, Trace
 
 MOST_MARKS = 2_000
@@ -33,7 +34,7 @@ def tables_of(run: Run, view: LinkView, most: int) -> Tables:
     every = _stride(run.summary.ticks, most)
     claims = joined(_thinned(run, CLAIMS_FILE, lambda each: _of_ticks(each, trace)))
     scenario = run.scenario
-    ticks = tick_columns(trace, claims, scenario.goal, scenario.estimator.compare)
+    ticks = tick_columns(trace, claims, target(scenario), scenario.estimator.compare)
     _note_due(run, ticks)
     return Tables(
         ticks,

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 from laglab.results.columns import Columns
 from laglab.results.numbers import (
     AXES,
-    Goal,
     deviation,
     goal_errors,
     loop_estimates,
     robot_pose,
     shadow_estimates,
 )
+from laglab.results.target import Target
 from laglab_gateway import FOLLOWED, Trace
 
 Array = NDArray[np.float64]
@@ -44,11 +44,11 @@ class Tables(NamedTuple):
 
 
 def tick_columns(
-    trace: Trace, claims: Columns, goal: Goal, shadows: Sequence[str] = ()
+    trace: Trace, claims: Columns, target: Target, shadows: Sequence[str] = ()
 ) -> dict[str, Array]:
     """Of each tick: poses, errors (with twice the claimed deviations), speeds and distances."""
     pose, rows = robot_pose(trace), len(trace["tick"])
-    rho, heading_error = goal_errors(pose, goal)
+    rho, heading_error = goal_errors(pose, target.poses(trace["tick"]))
     columns = {"tick": trace["tick"], "time": trace["time"], "rho": rho, "turn": heading_error}
     columns |= dict(zip(AXES, pose.T, strict=True))
     for name in AXES:

@@ -2,39 +2,36 @@
 
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, WithJsonSchema
+from pydantic import AfterValidator, Field
 
-from laglab.scenario.tables.table import POSE, Pose, Table
+from laglab.scenario.tables.names import known_estimator, offered
+from laglab.scenario.tables.table import POSE, Options, OptionsTable, Pose, Table
 from laglab_control import ESTIMATORS, StationConfig
 from laglab_gateway.values import NotNegative, Switch, described, saying
 
 
-def _known(name: str) -> str:
-    if name not in ESTIMATORS:
-        raise ValueError(f"must be one of {', '.join(ESTIMATORS)}, not {name!r}")
-    return name
-
-
-def _comparable(name: str) -> str:
-    if not ESTIMATORS[_known(name)].predicts:
+def comparable(name: str) -> str:
+    """The name of an estimator. Raises ValueError for one that estimates nothing."""
+    if name in ESTIMATORS and not ESTIMATORS[name].predicts:
         raise ValueError(f"must not be {name!r}, which estimates nothing that could be compared")
-    return name
+    return known_estimator(name)
 
 
 COMPARABLE = [name for name, kind in ESTIMATORS.items() if kind.predicts]
-EstimatorName = Annotated[
-    str, AfterValidator(_known), WithJsonSchema({"type": "string", "enum": list(ESTIMATORS)})
-]
-ComparedName = Annotated[
-    str, AfterValidator(_comparable), WithJsonSchema({"type": "string", "enum": COMPARABLE})
-]
+EstimatorName = Annotated[str, AfterValidator(known_estimator), offered(ESTIMATORS)]
+ComparedName = Annotated[str, AfterValidator(comparable), offered(COMPARABLE)]
 
 
 class EstimatorTable(Table):
     """The filter in the loop, those that look on, and their prior."""
 
     kind: Annotated[
-        EstimatorName, described("-", f"The filter in the loop: {', '.join(ESTIMATORS)}.")
+        EstimatorName,
+        described(
+            "-",
+            f"The filter in the loop: {', '.join(ESTIMATORS)}, an installed plug-in's name, or "
+            "`module:Class`.",
+        ),
     ] = StationConfig.estimator
     compare: Annotated[
         tuple[ComparedName, ...],
@@ -62,3 +59,7 @@ class EstimatorTable(Table):
             "the pose is found again; a single wild one is not used.",
         ),
     ] = StationConfig.guard
+    options: Annotated[
+        Options,
+        described("-", "What a filter that is none of ours is told besides the robot's model."),
+    ] = Field(default_factory=OptionsTable)

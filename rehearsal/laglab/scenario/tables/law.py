@@ -1,18 +1,42 @@
-"""`[law]`: the control law's gains and limits."""
+"""`[law]`: which control law, its gains, and what limits its commands."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
-from pydantic import Field
+from pydantic import AfterValidator, Field, model_validator
 
-from laglab.scenario.tables.table import Table, as_in
-from laglab_control import PolarLaw, SpeedLimits
+from laglab.scenario.paths import KINDS, resolved
+from laglab.scenario.tables.names import known_law, offered
+from laglab.scenario.tables.table import Options, OptionsTable, Table, as_in
+from laglab_control import LAWS, PolarLaw, SpeedLimits
 from laglab_control.limits import limits
 from laglab_gateway.values import Number, described
 
+LawName = Annotated[str, AfterValidator(known_law), offered(LAWS)]
+
 
 class LawTable(Table):
-    """The polar law (2), (4); without its limits and its tolerance it is the paper's."""
+    """The law by which the robot is driven: the polar law (2), (4), without its limits and its
+    tolerance the paper's; one that follows a path; or one's own."""
 
+    kind: Annotated[
+        LawName,
+        described(
+            "-",
+            f"The law: {', '.join(LAWS)}, an installed plug-in's name, or `module:Class`.",
+        ),
+    ] = "polar"
+    path: Annotated[
+        Annotated[str, AfterValidator(resolved)] | None,
+        described(
+            "-",
+            f"What the robot is to follow: {KINDS} about the goal's x and y [m, m/s], or a CSV "
+            "file, relative to the scenario's folder, of the columns time, x, y, theta, v, omega.",
+        ),
+    ] = None
+    options: Annotated[
+        Options,
+        described("-", "What the law is told besides; `tracking` k_x, k_y and k_theta."),
+    ] = Field(default_factory=OptionsTable)
     gamma: Annotated[
         Number, as_in(PolarLaw, "gamma"), described("1/s", "Gain γ of the distance to the goal.")
     ] = PolarLaw.gamma
@@ -59,6 +83,16 @@ class LawTable(Table):
             "more slowly, in proportion.",
         ),
     ] = SpeedLimits.caution
+
+    @model_validator(mode="after")
+    def _fitting(self) -> Self:
+        if self.kind == "tracking" and self.path is None:
+            raise ValueError(f"path: tracking follows one: give {KINDS} or a CSV file")
+        if self.kind == "polar" and self.path is not None:
+            raise ValueError('path: the polar law follows none: take kind = "tracking"')
+        if self.kind == "polar" and self.options:
+            raise ValueError("options: the polar law has none: its gains are keys of their own")
+        return self
 
     def of(self, made: type) -> dict[str, Any]:
         """Its own keys, for the fields of one of the controller's classes."""

@@ -3,7 +3,7 @@
 import re
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
 from laglab_control.limits import limits
 from laglab_gateway.values import Number, saying
@@ -13,6 +13,17 @@ class Table(BaseModel):
     """A table of a scenario; nothing else may stand in it."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class OptionsTable(dict[str, object]):
+    """Keyword arguments of what somebody brought; what can be written in TOML."""
+
+    def __hash__(self) -> int:  # type: ignore[override]
+        """As all of a scenario has one."""
+        return hash(repr(sorted(self.items())))
+
+
+Options = Annotated[dict[str, object], AfterValidator(OptionsTable)]
 
 
 def as_in(made: type, field: str) -> Any:

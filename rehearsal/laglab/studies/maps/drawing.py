@@ -49,6 +49,8 @@ def draw_study(
 def margins(runs: StudyRuns, chosen: Layout, into: Sorted) -> list[Plane]:
     """A panel each; none where it is not on the map, or not one for all runs of a cell."""
     x, y, key = chosen.x, chosen.y or "", chosen.panels
+    if not _is_polar(runs, (x, y, key, *chosen.averaged)):
+        return []
     if runs.base is None or not (moves_it(x) or moves_it(y)) or any(map(moves_it, chosen.averaged)):
         return []
     bases = [
@@ -61,7 +63,14 @@ def margins(runs: StudyRuns, chosen: Layout, into: Sorted) -> list[Plane]:
 def _line_margin(runs: StudyRuns, chosen: Layout) -> Scenario | None:
     """What it is drawn for, where one line is that of all."""
     others = (chosen.panels, *chosen.averaged)
+    if not _is_polar(runs, (chosen.x, *others)):
+        return None
     return None if any(key and moves_it(key) for key in others) else runs.base
+
+
+def _is_polar(runs: StudyRuns, keys: Sequence[str | None]) -> bool:
+    """Of no other law is the margin known."""
+    return runs.base is not None and runs.base.law.kind == "polar" and "law.kind" not in keys
 
 
 def _title(runs: StudyRuns, chosen: Layout) -> str:

@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 
 from laglab.results.nees import nees
 from laglab.results.numbers import (
-    Goal,
     RmsError,
     at_goal,
     goal_errors,
     last_second,
     pose_difference,
 )
+from laglab.results.target import Target
 
 Array = NDArray[np.float64]
 AT_ONCE = 8
@@ -42,7 +42,7 @@ class Judgements(NamedTuple):
     """A column each, shape (robots,); NaN for nothing. SI units."""
 
     converged: NDArray[np.bool_]
-    """At the goal at every tick of the last second."""
+    """At the goal, or where the path wants it, at every tick of the last second."""
     settled_s: Array
     """[s] From when on it was there, to the end."""
     rms_x: Array
@@ -59,11 +59,9 @@ class Judgements(NamedTuple):
     diverged_tick: Array
 
 
-def judgements(
-    record: Record, goal: Goal, sample_time: float, measurement_delay: int
-) -> Judgements:
+def judgements(record: Record, of: Target, measurement_delay: int) -> Judgements:
     """Of every robot. Needs little memory beside the record itself."""
-    judged = [_of(part, goal, sample_time, measurement_delay) for part in _parts(record)]
+    judged = [_of(part, of, measurement_delay) for part in _parts(record)]
     return joined(judged)
 
 
@@ -78,14 +76,15 @@ def _parts(record: Record) -> Iterator[Record]:
         yield Record(*(None if each is None else each[some] for each in record))  # type: ignore[arg-type]
 
 
-def _of(record: Record, goal: Goal, sample_time: float, m: int) -> Judgements:
+def _of(record: Record, of: Target, m: int) -> Judgements:
     truth, estimates, claimed, applied, diverged = record
-    robots, ticks, _ = truth.shape
-    there = at_goal(truth, goal)
+    (robots, ticks, _), sample_time = truth.shape, of.sample_time
+    wanted = of.poses(np.arange(float(ticks)))
+    there = at_goal(truth, wanted)
     completed = np.isnan(diverged)
     time: Array = np.arange(ticks) * np.float64(sample_time)
     last = np.where(completed, ticks - 1, np.nan_to_num(diverged)).astype(int)
-    rho, theta_error = goal_errors(truth[np.arange(robots), last], goal)
+    rho, theta_error = goal_errors(truth[np.arange(robots), last], wanted[last])
     rms, mean_nees = _of_estimates(truth, estimates, claimed, m)
     largest = np.fmax.reduce(np.abs(applied), axis=1)
     return Judgements(

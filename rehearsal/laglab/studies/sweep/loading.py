@@ -12,6 +12,7 @@ from laglab.errors import StudyError
 from laglab.scenario import Overrides, Scenario, changed, load, shipped_names
 from laglab.scenario.loading import made_of
 from laglab.scenario.model import plain
+from laglab.scenario.paths import anchored
 from laglab.scenario.tables.table import Table
 from laglab.scenario.toml import parsed
 from laglab.studies.sweep.study import Study
@@ -122,9 +123,11 @@ def _axes(table: dict[str, Any], above: str = "") -> Iterator[tuple[str, list[ob
 
 def _anchored(key: str, values: list[object], folder: Path) -> list[object]:
     """Paths are relative to the study's file."""
-    if key != "link.replay":
-        return values
-    return [str((folder / str(value)).resolve()) for value in values]
+    if key == "law.path":
+        return [anchored(str(value), folder.resolve()) for value in values]
+    if key == "link.replay":
+        return [str((folder / str(value)).resolve()) for value in values]
+    return values
 
 
 def to_toml(study: Study, origin: str) -> str:

@@ -15,7 +15,10 @@ from laglab.scenario.explain import spelled
 from laglab.studies.sweep.cell import Cell
 from laglab.version import code_version
 from laglab_control import FAR
+from laglab_control.plugins import Group, source_of
 
+FILES = ("link.replay", "law.path")
+"""Keys that name one."""
 MOST_SEEDS = 250
 """Of one cell: as many runs as are one task, with or without a batch."""
 
@@ -74,7 +77,7 @@ class Study:
     @cached_property
     def origin(self) -> str:
         """What the cells depend on besides their place in the grid: base, files and code."""
-        told = [code_version(), self._base, sorted(self._files())]
+        told = [code_version(), self._base, sorted(self._files()), sorted(self._brought())]
         return hashlib.sha256(json.dumps(told).encode()).hexdigest()[:32]
 
     @cached_property
@@ -85,12 +88,24 @@ class Study:
 
     def _files(self) -> Iterator[tuple[str, str]]:
         """That the scenarios name, and a hash of each."""
-        replay = self.scenario.link.replay
-        named = [*([str(replay)] if replay else []), *map(str, self.grid.get("link.replay", ()))]
+        link, law = self.scenario.link, self.scenario.law
+        named = [str(each) for each in (link.replay, law.path) if each]
+        named += [str(each) for key in FILES for each in self.grid.get(key, ())]
         for name in named:
             path = Path(name)
             if path.is_file():
                 yield name, hashlib.sha256(path.read_bytes()).hexdigest()
+
+    def _brought(self) -> Iterator[tuple[str, str]]:
+        """Names of what somebody brought, and a hash of the module of each."""
+        chosen: tuple[tuple[Group, str, str], ...] = (
+            ("laglab.estimators", "estimator.kind", self.scenario.estimator.kind),
+            ("laglab.laws", "law.kind", self.scenario.law.kind),
+        )
+        for group, key, own in chosen:
+            for name in {own, *map(str, self.grid.get(key, ()))}:
+                if (path := source_of(group, name)) is not None:
+                    yield name, hashlib.sha256(path.read_bytes()).hexdigest()
 
     def as_table(self) -> dict[str, object]:
         """As in a file, the scenario whole."""

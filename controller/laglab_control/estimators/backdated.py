@@ -1,0 +1,105 @@
+"""Any filter that knows nothing of delays, made one that does: it goes back to where a measurement
+belongs, and runs again from there."""
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from laglab_control.estimators.interface import Applied, Estimator, Measured, by_sampling
+from laglab_control.estimators.kalman import Innovation
+from laglab_control.model import Matrix, Vector
+from laglab_control.robot import RobotModel
+
+WINDOW = 256
+"""Ticks that are kept; what was measured before is not used."""
+
+
+class PastTick(NamedTuple):
+    """One tick, before its measurement."""
+
+    x: Vector
+    P: Matrix
+    u: Vector | None = None
+    """In force from then on; None at the present."""
+    z: Vector | None = None
+    """None: nothing was measured, or has come yet."""
+
+
+class BackdatedState(NamedTuple):
+    """Immutable."""
+
+    tick: int
+    x: Vector
+    P: Matrix
+    past: tuple[PastTick, ...]
+    """The present one last."""
+    innovation: Innovation | None
+
+
+class Backdated(Estimator[BackdatedState]):
+    """To be derived from: `forward` and `corrected` are what the filter does without delays.
+
+    A tick costs as much as the filter takes for all ticks since the measurement that came; a
+    library's filter is often slow enough for that to matter (`laglab check`).
+    """
+
+    def __init__(self, model: RobotModel) -> None:
+        self.model = model
+
+    @abstractmethod
+    def forward(self, x: Vector, P: Matrix, u: Vector) -> tuple[Vector, Matrix]:
+        """x (d,) and P (d, d) one tick later, with the input u = [v, omega] in force meanwhile."""
+
+    @abstractmethod
+    def corrected(self, x: Vector, P: Matrix, z: Vector) -> tuple[Vector, Matrix]:
+        """x (d,) and P (d, d) after a measurement z of the pose (3,)."""
+
+    def start(self, x: Vector, P: Matrix) -> BackdatedState:
+        """At tick 0."""
+        return BackdatedState(0, x, P, (PastTick(x, P),), None)
+
+    def predict(self, state: BackdatedState, u: Vector) -> BackdatedState:
+        """One tick further."""
+        x, P = self.forward(state.x, state.P, u)
+        past = (*state.past[-WINDOW:-1], state.past[-1]._replace(u=u), PastTick(x, P))
+        return BackdatedState(state.tick + 1, x, P, past, None)
+
+    def correct(
+        self,
+        state: BackdatedState,
+        measurements: Sequence[Measured],
+        inputs: Sequence[Applied] = (),
+    ) -> BackdatedState:
+        """Again from the oldest tick of which something new is known. Raises StampError."""
+        past, first = list(state.past), state.tick + 1 - len(state.past)
+        new: list[int] = []
+        for tick, u in inputs:
+            if first <= tick < state.tick:
+                past[tick - first] = past[tick - first]._replace(u=u)
+                new.append(tick - first)
+        newest = None
+        for tick, z in by_sampling(measurements, state.tick):
+            if tick >= first and past[tick - first].z is None:
+                newest = tick - first
+                past[newest] = past[newest]._replace(z=z)
+                new.append(newest)
+        return self._again(state.tick, past, min(new), newest) if new else state
+
+    def innovation(self, state: BackdatedState) -> Innovation | None:
+        """z - x and P + R of the pose, when it came to the newest measurement."""
+        return state.innovation
+
+    def _again(
+        self, tick: int, past: list[PastTick], since: int, newest: int | None
+    ) -> BackdatedState:
+        x, P, innovation = past[since].x, past[since].P, None
+        for i in range(since, len(past)):
+            past[i] = here = past[i]._replace(x=x, P=P)
+            if here.z is not None:
+                if i == newest:
+                    S = P[:3, :3] + self.model.R
+                    innovation = Innovation(self.model.innovation(here.z, x[:3]), S)
+                x, P = self.corrected(x, P, here.z)
+            if here.u is not None:
+                x, P = self.forward(x, P, here.u)
+        return BackdatedState(tick, x, P, tuple(past), innovation)

@@ -1,0 +1,172 @@
+"""An estimator that somebody brought: whatever goes wrong in it is said in a line that names it."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from laglab_control.errors import ControlError
+from laglab_control.estimators.interface import (
+    Applied,
+    Calibration,
+    Estimator,
+    Measured,
+    State,
+    pose_of,
+)
+from laglab_control.estimators.kalman import Innovation
+from laglab_control.model import Matrix, Vector
+from laglab_control.plugins import Maker, PluginFailedError, called, made, refuse_misfit
+from laglab_control.robot import RobotModel, Ways
+
+METHODS = {
+    "start": ("x", "P"),
+    "predict": ("state", "u"),
+    "correct": ("state", "measurements", "inputs"),
+}
+"""That every estimator has, and what each is given."""
+OPTIONAL = {
+    "ahead": ("state", "inputs"),
+    "calibrated": ("state", "robot"),
+    "expect": ("state", "s"),
+    "innovation": ("state",),
+    "learned": ("state",),
+    "restart": ("state", "x", "P"),
+    "warning": ("state",),
+}
+
+
+def brought_estimator(
+    name: str, maker: Maker, model: RobotModel, options: dict[str, object]
+) -> "Brought":
+    """`Class(model, **options)`. Raises PluginError, naming what it lacks."""
+    estimator = made(name, maker, model, **options)
+    for method, parameters in METHODS.items():
+        refuse_misfit(name, estimator, method, *parameters)
+    for method, parameters in OPTIONAL.items():
+        if hasattr(estimator, method):
+            refuse_misfit(name, estimator, method, *parameters)
+    return Brought(name, estimator)
+
+
+@dataclass(frozen=True, eq=False)
+class Brought(Estimator[State]):
+    """Around an object with the METHODS and any of those that are OPTIONAL.
+
+    Every method raises PluginFailedError when the object's own fails, or answers what is no state:
+    one with the right `tick`, a finite `x` (d,) with a pose in it, and a finite `P` (d, d) or None.
+    """
+
+    name: str
+    estimator: Any
+
+    def start(self, x: Vector, P: Matrix) -> State:
+        """The state at tick 0."""
+        return self._whole("start", self._said("start", x, P), 0)
+
+    def predict(self, state: State, u: Vector) -> State:
+        """One tick further; what it holds is looked at once it is corrected."""
+        return self._in_time("predict", self._said("predict", state, u), state.tick + 1)
+
+    def correct(
+        self, state: State, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
+    ) -> State:
+        """With what arrived."""
+        corrected = self._said("correct", state, measurements, inputs)
+        return self._whole("correct", corrected, state.tick)
+
+    def restart(self, state: State, x: Vector, P: Matrix) -> State:
+        """Tick 0 again."""
+        if not self._has("restart"):
+            return self.start(x, P)
+        return self._whole("restart", self._said("restart", state, x, P), 0)
+
+    def expect(self, state: State, s: int) -> State:
+        """The same, prepared."""
+        if not self._has("expect"):
+            return state
+        return self._in_time("expect", self._said("expect", state, s), state.tick)
+
+    def calibrated(self, state: State, robot: Ways) -> Ways:
+        """The robot as it is known by now."""
+        ways: Ways = self._said("calibrated", state, robot) if self._has("calibrated") else robot
+        return ways
+
+    def learned(self, state: State) -> tuple[Calibration, ...]:
+        """What is known of the robot besides its pose."""
+        return tuple(self._said("learned", state)) if self._has("learned") else ()
+
+    def innovation(self, state: State) -> Innovation | None:
+        """Of the newest measurement."""
+        if not self._has("innovation"):
+            return None
+        answer = self._said("innovation", state)
+        try:
+            return None if answer is None else Innovation(*answer)
+        except TypeError:
+            raise self._failed(
+                "innovation", f"a value and its S, or None, not {answer!r}"
+            ) from None
+
+    def warning(self, state: State) -> str | None:
+        """What must not be overlooked."""
+        said: str | None = self._said("warning", state) if self._has("warning") else None
+        return said
+
+    @property
+    def is_watchable(self) -> bool:
+        """Whether a guard can see how wild a measurement is."""
+        return self._has("innovation")
+
+    def ahead(self, state: State, inputs: Iterable[Vector]) -> Vector | None:
+        """Where it says that the robot will be (3,)."""
+        if not self._has("ahead"):
+            return None
+        answer = self._said("ahead", state, list(inputs))
+        if answer is None:
+            return None
+        pose = np.asarray(answer)
+        if pose.shape != (3,) or not _is_finite(pose):
+            raise self._failed("ahead", f"a finite pose (3,), not {pose.tolist()}")
+        return pose
+
+    def _has(self, method: str) -> bool:
+        return hasattr(self.estimator, method)
+
+    def _said(self, method: str, *told: object) -> Any:
+        return called(self.name, getattr(self.estimator, method), *told)
+
+    def _failed(self, method: str, wanted: str) -> PluginFailedError:
+        return PluginFailedError(f"{self.name}.{method} must answer {wanted}")
+
+    def _in_time(self, method: str, state: State, tick: int) -> State:
+        try:
+            there = state.tick
+        except AttributeError:
+            raise self._failed(method, f"a state with tick, x and P, not {state!r:.60}") from None
+        if there != tick:
+            raise self._failed(method, f"a state of tick {tick}, not {there!r}")
+        return state
+
+    def _whole(self, method: str, state: State, tick: int) -> State:
+        self._in_time(method, state, tick)
+        try:
+            x, P, pose = state.x, state.P, pose_of(state)
+        except (AttributeError, TypeError, ControlError) as error:
+            raise self._failed(method, f"a state with tick, x and P: {error}") from error
+        if x is None:
+            return state
+        if not isinstance(x, np.ndarray) or x.ndim != 1 or not _is_finite(x):
+            raise self._failed(method, f"a finite array x (d,), not {x!r:.60}")
+        if not isinstance(pose, np.ndarray) or pose.shape != (3,) or not _is_finite(pose):
+            raise self._failed(method, f"a finite pose (3,), not {pose!r:.60}")
+        if P is not None and not (
+            isinstance(P, np.ndarray) and P.shape == (len(x), len(x)) and _is_finite(P)
+        ):
+            raise self._failed(method, f"a finite P {(len(x), len(x))} or None, not {P!r:.60}")
+        return state
+
+
+def _is_finite(values: Vector) -> bool:
+    return values.dtype.kind == "f" and bool(np.isfinite(values).all())

@@ -1,0 +1,129 @@
+"""Paths that a law may follow: where the robot is to be when, and how fast."""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from laglab_control.errors import ConfigError
+from laglab_control.limits import Positive, check
+from laglab_control.model import Matrix, Vector
+
+OUTLINE = 400
+"""Points by which a closed path is drawn."""
+
+
+class Reference(NamedTuple):
+    """Pose [m, m, rad] and speeds [m/s, rad/s] that are wanted at a time."""
+
+    x: float
+    y: float
+    theta: float
+    v: float
+    omega: float
+
+
+class Path(Protocol):
+    """A pure function of time."""
+
+    def sampled(self, times: Vector) -> Matrix:
+        """At `times` (n,) [s]: x, y, theta, v, omega in each row (n, 5)."""
+        ...
+
+    def outline(self) -> Matrix:
+        """Where it leads in the plane (k, 2) [m]."""
+        ...
+
+    def at(self, time: float) -> Reference:
+        """At one time [s]."""
+        return Reference(*self.sampled(np.array([time]))[0].tolist())
+
+
+@dataclass(frozen=True)
+class Circle(Path):
+    """Counter-clockwise at constant `speed` [m/s], from the point on the right of the centre."""
+
+    centre: tuple[float, float]
+    radius: Positive
+    speed: Positive
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    def sampled(self, times: Vector) -> Matrix:
+        """At `times` (n,)."""
+        rate = self.speed / self.radius
+        angle = rate * times
+        x = self.centre[0] + self.radius * np.cos(angle)
+        y = self.centre[1] + self.radius * np.sin(angle)
+        still = np.zeros_like(angle)
+        return np.stack((x, y, angle + math.pi / 2, still + self.speed, still + rate), axis=1)
+
+    def outline(self) -> Matrix:
+        """Once around."""
+        return self.sampled(np.linspace(0, math.tau * self.radius / self.speed, OUTLINE))[:, :2]
+
+
+@dataclass(frozen=True)
+class Eight(Path):
+    """A lying figure of eight, `width` [m] wide and half as high, from its middle to the upper
+    right; it is there, where the robot is fastest, that it has the `speed` [m/s]."""
+
+    centre: tuple[float, float]
+    width: Positive
+    speed: Positive
+
+    def __post_init__(self) -> None:
+        check(self)
+
+    @property
+    def _rate(self) -> float:
+        """[rad/s]: x = w/2 sin s, y = w/4 sin 2s with s the rate times t."""
+        return math.sqrt(2) * self.speed / self.width
+
+    def sampled(self, times: Vector) -> Matrix:
+        """At `times` (n,)."""
+        half, rate = self.width / 2, self._rate
+        s = rate * times
+        x, y = self.centre[0] + half * np.sin(s), self.centre[1] + half / 2 * np.sin(2 * s)
+        dx, dy = half * rate * np.cos(s), half * rate * np.cos(2 * s)
+        ddx, ddy = -half * rate**2 * np.sin(s), -2 * half * rate**2 * np.sin(2 * s)
+        theta = np.arctan2(dy, dx)
+        theta = np.where(theta > math.pi / 2, theta - math.tau, theta)  # it never looks up
+        squared = dx**2 + dy**2
+        return np.stack((x, y, theta, np.sqrt(squared), (dx * ddy - dy * ddx) / squared), axis=1)
+
+    def outline(self) -> Matrix:
+        """Once along it."""
+        return self.sampled(np.linspace(0, math.tau / self._rate, OUTLINE))[:, :2]
+
+
+@dataclass(frozen=True, eq=False)
+class Waypoints(Path):
+    """Linear between rows x, y, theta, v, omega (n, 5) at growing `times` (n,) [s].
+
+    Before the first and after the last row the robot is to stand there. Raises ConfigError.
+    """
+
+    times: Vector
+    rows: Matrix
+
+    def __post_init__(self) -> None:
+        if self.rows.shape != (len(self.times), 5) or not len(self.times):
+            raise ConfigError("a path must have a row of x, y, theta, v, omega for each time")
+        if not (np.isfinite(self.times).all() and np.isfinite(self.rows).all()):
+            raise ConfigError("a path must be of finite numbers")
+        if not (np.diff(self.times) > 0).all():
+            late = int(np.argmin(np.diff(self.times) > 0)) + 1
+            raise ConfigError(f"the times of a path must grow, not {self.times[late]} at last")
+
+    def sampled(self, times: Vector) -> Matrix:
+        """At `times` (n,)."""
+        columns = [np.interp(times, self.times, column) for column in self.rows.T]
+        under_way = (times >= self.times[0]) & (times <= self.times[-1])
+        return np.stack((*columns[:3], *(under_way * speed for speed in columns[3:])), axis=1)
+
+    def outline(self) -> Matrix:
+        """Its points."""
+        return self.rows[:, :2]

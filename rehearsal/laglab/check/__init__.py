@@ -1,0 +1,7 @@
+"""Whether what somebody brings keeps the interface: a row for each thing that can be wrong."""
+
+from laglab.check.checking import checked
+from laglab.check.finding import Finding, all_hold, findings_table
+from laglab.check.subject import KINDS, Kind, kind_of
+
+__all__ = ["KINDS", "Finding", "Kind", "all_hold", "checked", "findings_table", "kind_of"]

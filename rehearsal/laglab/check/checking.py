@@ -1,0 +1,103 @@
+"""Each kind of thing through its checks."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from laglab.check import estimator, law, plant
+from laglab.check.finding import Finding, findings
+from laglab.check.subject import KINDS, SHIPPED, Kind, maker_of
+from laglab_control import ESTIMATORS, Circle, Law, PluginFailedError, PolarLaw
+from laglab_control.estimators.family import estimator_kind
+from laglab_control.laws import brought_law, tracking_law
+from laglab_control.plugins import called, find_plugin, made, refuse_misfit
+from laglab_gateway import Plant, Reading
+
+Options = Mapping[str, object]
+
+
+def checked(kind: Kind, name: str, options: Options | None = None) -> Iterator[Finding]:
+    """A row for each check, as they are done.
+
+    Raises PluginError when there is no such thing; one that cannot be made fails its first row.
+    """
+    told = dict(options or {})
+    if name not in SHIPPED[kind]:
+        find_plugin(KINDS[kind], name, SHIPPED[kind])
+    match kind:
+        case "estimator":
+            return _estimator(name, told)
+        case "law":
+            return findings(law.CHECKS, lambda: _law(name, told), _admits("law", name))
+        case "plant":
+            return findings(plant.CHECKS, lambda: _plant(name, told), _admits("plant", name))
+
+
+def _admits(kind: Kind, name: str) -> Mapping[str, str]:
+    """What whoever made it says does not hold, by check, and why."""
+    if kind == "estimator" and name in ESTIMATORS:
+        return ESTIMATORS[name].admits
+    if name in SHIPPED[kind]:
+        return {}
+    admits: Mapping[str, str] = getattr(maker_of(kind, name), "admits", {})
+    return admits
+
+
+def _estimator(name: str, options: dict[str, object]) -> Iterator[Finding]:
+    of = estimator_kind(name, options)
+    optimal = name == "delayed-ekf" or bool(
+        name not in ESTIMATORS and getattr(maker_of("estimator", name), "optimal", False)
+    )
+
+    def make() -> estimator.Subject:
+        return estimator.Subject(of.make(estimator.MODEL), optimal)
+
+    return findings(estimator.CHECKS, make, _admits("estimator", name))
+
+
+def _law(name: str, options: dict[str, object]) -> Law:
+    if name == "polar":
+        return PolarLaw(law.GOAL)
+    if name == "tracking":
+        return tracking_law(Circle(law.GOAL[:2], 1.0, 0.5), options)
+    return brought_law(name, law.GOAL, options)
+
+
+def _plant(name: str, options: dict[str, object]) -> plant.Subject:
+    maker = maker_of("plant", name)
+
+    def make() -> Plant:
+        one = made(name, maker, plant.SAMPLE_TIME, plant.START, plant.SEED, **options)
+        for method, parameters in PLANT.items():
+            refuse_misfit(name, one, method, *parameters)
+        return Watched(name, one)
+
+    return plant.Subject(make)
+
+
+PLANT = {"read": (), "step": ("v", "omega"), "place": ("x", "y", "theta")}
+
+
+class Watched(Plant):
+    """A plant that somebody brought: what fails in it is a line. Raises PluginFailedError."""
+
+    def __init__(self, name: str, one: Any) -> None:
+        self._name, self._one = name, one
+
+    def read(self) -> Reading:
+        """Its answer as a reading."""
+        answer = called(self._name, self._one.read)
+        try:
+            return Reading(*map(float, answer))
+        except (TypeError, ValueError):
+            wanted = ", ".join(Reading._fields)
+            raise PluginFailedError(
+                f"{self._name}.read must answer {wanted}, not {answer!r:.60}"
+            ) from None
+
+    def step(self, v: float, omega: float) -> None:
+        """One tick."""
+        called(self._name, self._one.step, v, omega)
+
+    def place(self, x: float, y: float, theta: float) -> None:
+        """Elsewhere."""
+        called(self._name, self._one.place, x, y, theta)

@@ -1,0 +1,63 @@
+"""What is to be checked: found by its name, and known by its methods."""
+
+from collections.abc import Iterator, Mapping
+from typing import Literal
+
+from laglab.errors import ScenarioError
+from laglab_control import ESTIMATORS, LAWS, PluginError, find_plugin, is_module_class
+from laglab_control.plugins import Group, Maker
+
+Kind = Literal["estimator", "law", "plant"]
+KINDS: Mapping[Kind, Group] = {
+    "estimator": "laglab.estimators",
+    "law": "laglab.laws",
+    "plant": "laglab.plants",
+}
+METHODS: Mapping[Kind, tuple[str, ...]] = {
+    "estimator": ("start", "predict", "correct"),
+    "law": ("drive",),
+    "plant": ("read", "step", "place"),
+}
+SHIPPED: Mapping[Kind, tuple[str, ...]] = {
+    "estimator": tuple(ESTIMATORS),
+    "law": tuple(LAWS),
+    "plant": (),
+}
+
+
+def kind_of(name: str, told: Kind | None) -> Kind:
+    """As told, or by where it is known and which methods it has.
+
+    Raises ScenarioError and PluginError.
+    """
+    found = [told] if told else list(_by_name(name))
+    if len(found) == 1:
+        return found[0]
+    if is_module_class(name):
+        maker = find_plugin("laglab.estimators", name)
+        found = [kind for kind in METHODS if any(hasattr(maker, each) for each in METHODS[kind])]
+    if len(found) == 1:
+        return found[0]
+    what = "several things" if found else "none of the three by its methods"
+    raise ScenarioError(f"{name} is {what}: say which, with --as {'|'.join(KINDS)}")
+
+
+def _by_name(name: str) -> Iterator[Kind]:
+    if is_module_class(name):
+        return
+    for kind, group in KINDS.items():
+        if name in SHIPPED[kind]:
+            yield kind
+            continue
+        try:
+            find_plugin(group, name)
+        except PluginError as error:
+            if not str(error).startswith("no "):
+                raise
+        else:
+            yield kind
+
+
+def maker_of(kind: Kind, name: str) -> Maker:
+    """Raises PluginError."""
+    return find_plugin(KINDS[kind], name, SHIPPED[kind])

@@ -1,0 +1,47 @@
+"""``laglab check``."""
+
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from laglab.check import Kind, all_hold, checked, findings_table, kind_of
+from laglab.errors import ScenarioError
+from laglab.scenario import assignment
+
+FAILED = 1
+"""Exit code: a check does not hold, and nobody admits it."""
+
+
+def check(
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="`module:Class`, a plug-in's or a shipped name.")
+    ],
+    as_: Annotated[
+        Kind | None,
+        typer.Option("--as", help="What it is, where that cannot be seen by its methods."),
+    ] = None,
+    option: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--option", metavar="KEY=VALUE", help="What it is told besides; may be repeated."
+        ),
+    ] = None,
+) -> None:
+    """Check that a filter, law or plant keeps its interface.
+
+    A row for each thing that can be wrong; exit code 1 when one does not hold.
+    """
+    kind = kind_of(name, as_)
+    try:
+        options = dict(map(assignment, option or []))
+    except ScenarioError as error:
+        raise ScenarioError(str(error).replace("--set", "--option")) from None
+    found = list(checked(kind, name, options))
+    console = Console()
+    console.print(findings_table(found), highlight=False, markup=False)
+    held = all_hold(found)
+    article = "an" if kind == "estimator" else "a"
+    verdict = "keeps" if held else "does not keep"
+    console.print(f"{name} {verdict} the interface of {article} {kind}", highlight=False)
+    raise typer.Exit(0 if held else FAILED)

@@ -1,0 +1,28 @@
+"""``laglab new``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from laglab.check import Kind
+from laglab.new import make_package
+
+
+def new(
+    kind: Annotated[Kind, typer.Argument(help="What it is to be.")],
+    name: Annotated[str, typer.Argument(metavar="NAME", help="The package's and its own.")],
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="The folder in which its own is made.")
+    ] = Path(),
+) -> None:
+    """Make a small package for a filter, law or plant.
+
+    A module, an entry point by which laglab finds it, and a test that runs `laglab check`.
+    """
+    made = make_package(kind, name, out)
+    console = Console()
+    console.print(f"made {made.folder}; and now:", highlight=False, soft_wrap=True)
+    for command in made.commands:
+        console.print(f"    {command}", highlight=False, markup=False, soft_wrap=True)

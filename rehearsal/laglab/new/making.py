@@ -1,0 +1,71 @@
+"""A package of one module, made from a template that already runs."""
+
+import keyword
+import re
+from collections.abc import Mapping
+from importlib import resources
+from importlib.util import find_spec
+from pathlib import Path
+from string import Template
+from typing import NamedTuple
+
+from laglab.check import KINDS, Kind
+from laglab.errors import PlaceError, ScenarioError
+
+TEMPLATES = resources.files("laglab.new") / "templates"
+RUNS: Mapping[Kind, str] = {
+    "estimator": "laglab run lab --estimator {name}",
+    "law": "laglab run lab --law {name}",
+    "plant": "laglab run lab --set plant.kind={name}",
+}
+
+
+class Made(NamedTuple):
+    """What was made."""
+
+    folder: Path
+    commands: tuple[str, ...]
+    """That make use of it."""
+
+
+def make_package(kind: Kind, name: str, parent: Path) -> Made:
+    """In a new folder `parent/name`, with a module, an entry point and a test.
+
+    Raises ScenarioError for a name that cannot be a package's, PlaceError where it cannot go.
+    """
+    module = _module(name)
+    told = {
+        "name": name,
+        "module": module,
+        "class_name": "".join(part.capitalize() for part in module.split("_")),
+        "group": KINDS[kind],
+        "kind": kind,
+        "kind_with_article": f"an {kind}" if kind == "estimator" else f"a {kind}",
+    }
+    folder = parent / name
+    files = {
+        "pyproject.toml": "pyproject.toml",
+        f"{module}.py": f"{kind}.py",
+        f"test_{module}.py": "test.py",
+    }
+    try:
+        folder.mkdir(parents=True)
+        for file, template in files.items():
+            text = (TEMPLATES / f"{template}.template").read_text(encoding="utf-8")
+            (folder / file).write_text(Template(text).substitute(told), encoding="utf-8")
+    except OSError as error:
+        raise PlaceError(f"{folder} cannot be made: {error.strerror}") from error
+    use = RUNS[kind].format(name=name)
+    commands = (f"pip install -e {folder}", f"laglab check {name}", use, f"pytest {folder}")
+    return Made(folder, commands)
+
+
+def _module(name: str) -> str:
+    if not re.fullmatch(r"[a-z][a-z0-9]*([-_][a-z0-9]+)*", name):
+        raise ScenarioError(
+            f"{name}: a package's name is of small letters and digits, with - or _ between them"
+        )
+    module = name.replace("-", "_")
+    if keyword.iskeyword(module) or find_spec(module) is not None:
+        raise ScenarioError(f"{name}: Python has something of that name already: take another one")
+    return module

@@ -1,0 +1,38 @@
+"""Names of what runs: shipped, of an installed plug-in, or `module:Class`.
+
+`module:Class` is not looked for here: on two machines only one of them need have it.
+"""
+
+from collections.abc import Iterable
+from importlib.metadata import entry_points
+
+from pydantic import WithJsonSchema
+
+from laglab_control import ESTIMATORS, LAWS, is_module_class
+from laglab_control.plugins import Group
+
+
+def known(group: Group, name: str, shipped: Iterable[str]) -> str:
+    """The name. Raises ValueError, listing them, when there is none like it."""
+    if name in shipped or is_module_class(name):
+        return name
+    installed = sorted(entry_points(group=group).names)
+    if name in installed:
+        return name
+    listed = ", ".join((*shipped, *installed))
+    raise ValueError(f"must be one of {listed}, or module:Class, not {name!r}")
+
+
+def known_estimator(name: str) -> str:
+    """The same of an estimator."""
+    return known("laglab.estimators", name, ESTIMATORS)
+
+
+def known_law(name: str) -> str:
+    """The same of a law."""
+    return known("laglab.laws", name, LAWS)
+
+
+def offered(names: Iterable[str]) -> WithJsonSchema:
+    """For editors: the shipped names, and any other."""
+    return WithJsonSchema({"anyOf": [{"enum": list(names)}, {"type": "string"}]})
