@@ -26,6 +26,7 @@ from laglab.commands import (
     replay,
     report,
     reproduce,
+    rivals,
     run,
     scenario,
     scenarios,
@@ -82,6 +83,7 @@ app.command("export")(export.export)
 app.command("animate")(animate.animate)
 app.command("consistency")(consistency.consistency)
 app.command("trust")(trust.trust)
+app.command("rivals")(rivals.rivals)
 app.command("soak")(soak.soak)
 app.command("map")(maps.map_study)
 app.command("reproduce")(reproduce.reproduce)

@@ -122,10 +122,9 @@ class Scenario(Table):
     @property
     def gist(self) -> str:
         """Law, unless it is the polar one, filter, delays and noise, in a few words."""
-        n, m = self.link.n, self.link.m
         noise = "on" if self.noise else "off"
         law = "" if self.law.kind == "polar" else f"{self.law.kind}, "
-        return f"{law}{self.estimator.kind}, n = {n}, m = {m}, noise {noise}"
+        return f"{law}{self.estimator.kind}, n = {self.link.n}, m = {self.link.m}, noise {noise}"
 
     def first_estimate(self) -> NDArray[np.float64]:
         """x̂_0, shape (3,): the true start, a pose, or drawn from N(start, P_0) by the seed."""

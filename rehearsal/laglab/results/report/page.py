@@ -127,7 +127,7 @@ def _settings(panels: Sequence[Panel]) -> Markup:
     told = [
         Told(
             panel.scenario.sample_time,
-            panel.scenario.link.command_delay,
+            panel.scenario.link.n,
             panel.scenario.plant.track,
         )
         for panel in panels

@@ -45,8 +45,7 @@ def _together(cells: Sequence[Cell]) -> Iterator[Judgements]:
     """One batch."""
     scenario, scenarios = cells[0].scenario, [run for cell in cells for run in cell.runs()]
     many = run_many(scenarios)
-    m = scenario.link.m
-    judged = judgements(_record(many), target(scenario), m)
+    judged = judgements(_record(many), target(scenario), scenario.link.m)
     for robot in np.flatnonzero(many.unsure):
         alone = judged_alone(scenarios[robot])
         for column, value in zip(judged, alone, strict=True):

@@ -53,8 +53,7 @@ def judged_alone(scenario: Scenario) -> Judgements:
     """What became of one run. Raises RunError."""
     claims: list[Array] = []
     record = _record(run(scenario, controller=partial(Claiming, claims=claims)), claims)
-    m = scenario.link.m
-    return judgements(record, target(scenario), m)
+    return judgements(record, target(scenario), scenario.link.m)
 
 
 def _record(done: Run, claims: Sequence[Array]) -> Record:

@@ -1,0 +1,180 @@
+"""The ways to live with a link, beside each other on the same links."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from msgspec import Struct
+
+from laglab.interface import run
+from laglab.results.numbers import loop_estimates, robot_pose
+from laglab.results.target import target
+from laglab.runs.robot_side import link_fates
+from laglab.scenario import Scenario, changed
+from laglab.scenario.overrides import Overrides
+from laglab.studies.sweep.judged import Record, judgements
+from laglab.studies.workers import shared_out
+
+PLAN = 45
+"""[ticks] So far the plans reach: their frames still fit into one datagram."""
+IN_TIME = 0.99
+"""The share of the frames that are to come before the bound of the play-out."""
+MOST_TRIED = 5000
+"""Frames by which the bounds are found."""
+A_FRAME = bytes(64)
+
+OWN_LINK = "its own"
+"""The scenario's, where it is not ideal."""
+NOTHING: Overrides = {
+    "link.command": {},
+    "link.measurement": {},
+    "link.event": [],
+    "link.replay": None,
+}
+
+
+def both(**impairments: object) -> Overrides:
+    """The same in both directions, and nothing else."""
+    return {**NOTHING, "link.command": impairments, "link.measurement": impairments}
+
+
+def _random_delay(spread: float) -> object:
+    return {"distribution": "uniform", "mean": spread / 2, "spread": spread / 2}
+
+
+LINKS: Mapping[str, Overrides] = {
+    "ideal": NOTHING,
+    "jitter": both(extra_delay={"distribution": "exponential", "mean": 0.05}),
+    "loss": both(loss=0.3),
+    "bursts": both(burst={"good_to_bad": 0.02, "bad_to_good": 0.05}),
+    "outages": both(outages=[[2.0, 1.0], [6.0, 1.0]]),
+    "random": both(extra_delay=_random_delay(0.1), loss=0.1),
+}
+"""`random` is what the paper's authors went on to in 2014: random delays, by which frames overtake
+each other, and losses."""
+
+
+class Strategy(NamedTuple):
+    """A way to live with a link."""
+
+    keys: Overrides
+    played_out: bool = False
+
+
+def _station(estimator: str, guard: bool = False) -> Overrides:
+    return {"estimator.kind": estimator, "estimator.guard": guard}
+
+
+DEFAULT = _station("delayed-ekf", guard=True)
+"""Of `lab`."""
+STRATEGIES: Mapping[str, Strategy] = {
+    "raw": Strategy(_station("raw")),
+    "popf": Strategy({**_station("popf"), "estimator.initial_covariance": 1e-4}),
+    "tue-predictor": Strategy(_station("tue-predictor")),
+    "delayed-ekf": Strategy(_station("delayed-ekf")),
+    "guarded": Strategy(DEFAULT),
+    "play-out": Strategy(DEFAULT, played_out=True),
+    "plans": Strategy({**DEFAULT, "link.plan": PLAN}),
+}
+"""`popf` has the P_0 of the paper: with that of `lab` it diverges."""
+
+
+class Trial(Struct, frozen=True):
+    """One run."""
+
+    link: str
+    strategy: str
+    scenario: str
+    """As TOML."""
+
+
+class Outcome(Struct, frozen=True):
+    """What became of it."""
+
+    link: str
+    strategy: str
+    converged: bool
+    settled: float | None
+    """[s] From when on the robot was at the goal; None: it was not, at the end."""
+    rms: float | None
+    """[m] Of the estimated position, over the ticks >= m; None: nothing was estimated."""
+    driven: float
+    """[m] The way that the robot went."""
+
+
+def links_of(scenario: Scenario) -> dict[str, Overrides]:
+    """On which they meet: all, and the scenario's own."""
+    own: dict[str, Overrides] = {OWN_LINK: {}} if link_fates(scenario) else {}
+    return {**LINKS, **own}
+
+
+def trials(
+    scenario: Scenario, links: Sequence[str], strategies: Sequence[str], seeds: int
+) -> list[Trial]:
+    """Every strategy on every link, seed after seed. Raises ScenarioError."""
+    conditions = links_of(scenario)
+    return [
+        Trial(link, strategy, _met(scenario, conditions[link], strategy, number).to_toml())
+        for number in range(seeds)
+        for link in links
+        for strategy in strategies
+    ]
+
+
+def _met(scenario: Scenario, link: Overrides, strategy: str, number: int) -> Scenario:
+    plain: Overrides = {"seed": scenario.seed + number, "link.plan": 0, "link.playout": {}}
+    there = changed(scenario, {**link, **plain})
+    how = STRATEGIES[strategy]
+    return changed(there, {**how.keys, **(bounds(there) if how.played_out else {})})
+
+
+def bounds(scenario: Scenario) -> Overrides:
+    """Of a play-out that all but a hundredth of the frames that get through are in time for."""
+    Ts, link = scenario.sample_time, scenario.link
+    own = {"command": link.command_delay, "measurement": link.measurement_delay}
+    fates = link_fates(scenario)
+    found: dict[str, object] = {}
+    for direction, delay in own.items():
+        ticks = range(min(scenario.must_end(), MOST_TRIED)) if direction in fates else ()
+        tried = [fates[direction].of(k, k * Ts, A_FRAME) for k in ticks]  # type: ignore[index]
+        extra = [copy.extra for copies in tried for copy in copies if copy.kind == "delivered"]
+        late = math.ceil(np.quantile(extra, IN_TIME) / Ts - 1e-9) if extra else 0
+        found[f"link.playout.{direction}"] = delay + late
+    return found
+
+
+def outcomes(jobs: Sequence[Trial], workers: int) -> Iterator[Outcome]:
+    """As they are done. Raises RunError."""
+    return shared_out(tried, jobs, workers)
+
+
+def tried(trial: Trial) -> Outcome:
+    """In a worker: one run."""
+    scenario = Scenario.from_toml(trial.scenario)
+    done = run(scenario)
+    trace, diverged = done.trace, done.summary.outcome == "diverged"
+    speeds = np.stack([trace["v"], trace["omega"]], axis=1)
+    record = Record(
+        robot_pose(trace)[np.newaxis],
+        loop_estimates(trace)[np.newaxis],
+        None,
+        speeds[np.newaxis],
+        np.array([trace["tick"][-1] if diverged else np.nan]),
+    )
+    with np.errstate(all="ignore"):  # what diverges overflows
+        judged = judgements(record, target(scenario), scenario.link.m)
+        driven = np.hypot(*np.diff(robot_pose(trace)[:, :2], axis=0).T).sum()
+        rms = np.hypot(judged.rms_x[0], judged.rms_y[0])
+    return Outcome(
+        trial.link,
+        trial.strategy,
+        bool(judged.converged[0]),
+        _finite(judged.settled_s[0]),
+        _finite(rms),
+        float(driven),
+    )
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

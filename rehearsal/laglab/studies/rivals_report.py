@@ -1,0 +1,114 @@
+"""How the rivals fared, as a table and as a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from rich.table import Table
+
+from laglab.results.figures import INCHES, Width, printed, sheet
+from laglab.studies.rivals import Outcome
+from laglab.tables import plain_table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+NOTHING = "-"
+
+
+class Score(NamedTuple):
+    """All seeds of one strategy on one link."""
+
+    runs: int
+    converged: int
+    settled: float
+    """[s] The median of the runs that settled; NaN: none did."""
+    rms: float
+    """[m] Over all runs; NaN: nothing was estimated."""
+    driven: float
+    """[m] The median."""
+
+    @property
+    def share(self) -> float:
+        """Of the runs that converged."""
+        return self.converged / self.runs
+
+
+Scores = Mapping[tuple[str, str], Score]
+"""By link and strategy."""
+
+
+def scores(outcomes: Sequence[Outcome]) -> Scores:
+    """Of all that there are."""
+    runs: dict[tuple[str, str], list[Outcome]] = {}
+    for one in outcomes:
+        runs.setdefault((one.link, one.strategy), []).append(one)
+    return {key: _score(ones) for key, ones in runs.items()}
+
+
+def _score(ones: Sequence[Outcome]) -> Score:
+    settled = [one.settled for one in ones if one.settled is not None]
+    squares = [one.rms**2 for one in ones if one.rms is not None]
+    return Score(
+        len(ones),
+        sum(one.converged for one in ones),
+        float(np.median(settled)) if settled else np.nan,
+        float(np.sqrt(np.mean(squares))) if squares else np.nan,
+        float(np.median([one.driven for one in ones])),
+    )
+
+
+def rivals_table(title: str, of: Scores, links: Sequence[str], strategies: Sequence[str]) -> Table:
+    """A line for each strategy, link by link."""
+    table = plain_table(
+        title=title,
+        caption="settled: median of the runs that did;\n"
+        "RMS: of the estimated position, over all runs;\n"
+        "driven: the way that the robot went, median",
+    )
+    table.add_column("link", no_wrap=True)
+    table.add_column("strategy", no_wrap=True)
+    for heading in ("converged", "settled \\[s]", "RMS \\[m]", "driven \\[m]"):
+        table.add_column(heading, justify="right")
+    for link in links:
+        for number, strategy in enumerate(strategies):
+            score = of[link, strategy]
+            cells = (
+                f"{score.share:.0%}",
+                _told(score.settled),
+                _told(score.rms),
+                _told(score.driven),
+            )
+            table.add_row("" if number else link, strategy, *cells)
+        if link != links[-1]:
+            table.add_row()
+    return table
+
+
+def _told(value: float) -> str:
+    return NOTHING if np.isnan(value) else f"{value:.3g}"
+
+
+def draw_rivals(
+    title: str, of: Scores, links: Sequence[str], strategies: Sequence[str], width: Width = "two"
+) -> Figure:
+    """A field for each link and strategy: the share of runs that converge, and how soon."""
+    shares = np.array([[of[link, strategy].share for strategy in strategies] for link in links])
+    with printed():
+        figure = sheet(INCHES[width], 0.9 + 0.34 * len(links))
+        axes = figure.subplots()
+        axes.imshow(shares, cmap="cividis", vmin=0, vmax=1, aspect="auto")
+        axes.grid(visible=False)
+        for (row, column), share in np.ndenumerate(shares):
+            settled = of[links[row], strategies[column]].settled
+            text = f"{share:.0%}" + ("" if np.isnan(settled) else f"\n{settled:.1f} s")
+            ink = "black" if share > 0.5 else "white"
+            axes.text(column, row, text, ha="center", va="center", color=ink)
+        names = [strategy.replace("-", "-\n") for strategy in strategies]
+        axes.set_xticks(range(len(strategies)), names)
+        axes.set_yticks(range(len(links)), links)
+        axes.xaxis.tick_top()
+        axes.set_title(title)
+    return figure
