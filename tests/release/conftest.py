@@ -10,28 +10,14 @@ from pathlib import Path
 import pytest
 
 from .environments import Environment, said
-from .page import in_shell, releasing
+from .page import build
 
-Build = Callable[[Path], Path]
-
-
-def build(clone: Path) -> Path:
-    """Builds as docs/releasing.md has it: the folder with the sdist and the wheel."""
-    (command,) = releasing("-m build")
-    done = in_shell(command, clone)
-    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
-    return clone / "dist"
+Clone = Callable[[Path], Path]
 
 
 @pytest.fixture(scope="session")
-def build_release(clone_into: Build) -> Build:
-    """Builds in a new clone in the given folder, where git has nothing to say."""
-    return lambda folder: build(clone_into(folder))
-
-
-@pytest.fixture(scope="session")
-def release(tmp_path_factory: pytest.TempPathFactory, build_release: Build) -> Path:
-    """The folder with the sdist and the wheel."""
+def release(tmp_path_factory: pytest.TempPathFactory, clone_into: Clone) -> Path:
+    """The folder with the sdist and the wheel, built in a clone where git has nothing to say."""
     fcntl = pytest.importorskip("fcntl")
     shared = tmp_path_factory.getbasetemp()
     if "PYTEST_XDIST_WORKER" in os.environ:
@@ -39,7 +25,7 @@ def release(tmp_path_factory: pytest.TempPathFactory, build_release: Build) -> P
     clone = shared / "release"
     with (shared / "release.lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        return clone / "dist" if clone.exists() else build_release(clone)
+        return clone / "dist" if clone.exists() else build(clone_into(clone))
 
 
 @pytest.fixture(scope="session")
@@ -65,8 +51,8 @@ def _candidates() -> Iterator[str]:
     for minor in range(11, 20):
         if path := shutil.which(f"python3.{minor}"):
             yield path
-    for path in Path(sys.base_prefix).parent.glob("*/bin/python3"):
-        yield str(path)
+    for beside in Path(sys.base_prefix).parent.glob("*/bin/python3"):
+        yield str(beside)
 
 
 @pytest.fixture

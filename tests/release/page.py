@@ -27,3 +27,11 @@ def in_shell(command: str, folder: Path) -> subprocess.CompletedProcess[str]:
         text=True,
         check=False,
     )
+
+
+def build(clone: Path) -> Path:
+    """Builds as docs/releasing.md has it: the folder with the sdist and the wheel."""
+    (command,) = releasing("-m build")
+    done = in_shell(command, clone)
+    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-2000:]
+    return clone / "dist"
