@@ -161,6 +161,23 @@ def test_a_log_replays_to_the_same_link_on_another_run(tmp_path: Path) -> None:
     assert read_link_log(tmp_path / "link.csv", "measurement") == []
 
 
+def test_frames_that_enter_in_one_tick_are_replayed_each_as_its_own() -> None:
+    def through(line: Channel[Command]) -> list[tuple[int, int]]:
+        out = []
+        for tick in range(60):
+            for part in range(3):
+                line.push(tick, command(3 * tick + part))
+            out += [(crossing.message.tick, tick) for crossing in line.due(tick)]
+        return out
+
+    line = channel(Impairments(ExtraDelay("exponential", 0.02), loss=0.4))
+    first, log = through(line), line.take_log()
+    assert [row.frame for row in log] == [0, 1, 2] * 60
+    again: Channel[Command] = Channel("command", 0, TS, RecordedFates(log))
+    assert through(again) == first
+    assert again.take_log() == log
+
+
 @pytest.mark.parametrize("text", ["", "a,b\n", "direction\ncommand\n", "\0"])
 def test_what_is_no_link_log_is_refused_by_name(tmp_path: Path, text: str) -> None:
     path = tmp_path / "other.csv"
