@@ -18,6 +18,7 @@ from laglab_gateway import (
     RandomFates,
     RecordedFates,
     TimelineError,
+    first_tick,
     read_link_log,
 )
 from laglab_protocol import Command
@@ -176,6 +177,18 @@ def test_frames_that_enter_in_one_tick_are_replayed_each_as_its_own() -> None:
     again: Channel[Command] = Channel("command", 0, TS, RecordedFates(log))
     assert through(again) == first
     assert again.take_log() == log
+
+
+@pytest.mark.parametrize("tick", [0, 1, 3, 7, 29, 57])
+def test_an_instant_belongs_to_the_tick_that_is_not_earlier(tick: int) -> None:
+    """Sums of doubles may be a little late: 0.1 + 0.2 is still tick 3."""
+    assert first_tick(sum([0.1] * tick), 0.1) == tick
+    assert first_tick(0.1 * tick + 0.001, 0.1) == tick + 1
+
+
+def test_frames_that_the_log_does_not_have_are_delivered_in_time() -> None:
+    again: Channel[Command] = Channel("command", 2, TS, RecordedFates([]))
+    assert cross(again, 5) == [(tick, tick + 2) for tick in range(5)]
 
 
 @pytest.mark.parametrize("text", ["", "a,b\n", "direction\ncommand\n", "\0"])
