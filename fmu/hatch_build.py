@@ -1,6 +1,9 @@
 """Builds the FMUs when the package is installed, in editable and in ordinary wheels.
 
-With LAGLAB_ALL_PLATFORMS=1 the wheel holds binaries for every platform: the one to release.
+Whoever installs from sources gets this machine's binaries, in seconds, from its own compiler. With
+LAGLAB_ALL_PLATFORMS=1 the wheel holds those of every platform and is tagged for any: the one to
+release (docs/releasing.md). One built without it by mistake is tagged linux_x86_64 or the like,
+which package indexes refuse.
 """
 
 import os
@@ -17,6 +20,8 @@ sys.path.insert(0, str(HERE))
 from laglab_fmu.compiler import PLATFORMS, host_compiler  # noqa: E402 needs nothing installed
 
 FMPY, ZIGLANG = "fmpy>=0.3.30", "ziglang>=0.13"
+RELEASED_WITH = "ziglang==0.17.1"
+"""One compiler for all who build a release: another one gives other bytes."""
 
 
 class FmuBuildHook(BuildHookInterface[Any]):
@@ -26,8 +31,9 @@ class FmuBuildHook(BuildHookInterface[Any]):
         """fmpy brings the FMI headers; ziglang compiles for others, or where nothing else does."""
         if self.target_name != "wheel":
             return []
-        enough = host_compiler() and not _for_all_platforms()
-        return [FMPY] if enough else [FMPY, ZIGLANG]
+        if _for_all_platforms():
+            return [FMPY, RELEASED_WITH]
+        return [FMPY] if host_compiler() else [FMPY, ZIGLANG]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Builds into the package folder: hatchling and an editable installation find it there."""

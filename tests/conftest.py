@@ -2,6 +2,7 @@
 
 import compileall
 import re
+import shutil
 import subprocess
 import sys
 import venv
@@ -64,6 +65,29 @@ def listening_port() -> Callable[["subprocess.Popen[str]"], str]:
         return found[1]
 
     return read
+
+
+Clone = Callable[[Path], Path]
+
+
+@pytest.fixture(scope="session")
+def clone_into() -> Clone:
+    """Copies the files that git tracks, and no others, into a new folder, which it gives."""
+
+    def copy(folder: Path) -> Path:
+        tracked = subprocess.check_output(["git", "ls-files", "-z"], cwd=ROOT, text=True)
+        for name in filter(None, tracked.split("\0")):
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / name, folder / name)
+        return folder
+
+    return copy
+
+
+@pytest.fixture
+def bare_clone(tmp_path: Path, clone_into: Clone) -> Path:
+    """The files that git tracks, and no others."""
+    return clone_into(tmp_path / "clone")
 
 
 @pytest.fixture

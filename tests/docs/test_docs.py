@@ -20,7 +20,7 @@ from laglab_gateway import ROWS, TraceRow
 
 ROOT = Path(__file__).parents[2]
 COMPONENTS = ("fmu", "protocol", "gateway", "controller", "rehearsal", "examples", "tests")
-PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("*/*.md"), *ROOT.glob("examples/*/*.md")])
+PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("[a-z]*/**/*.md")])
 THEORY = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
 GLOSSARY = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")
 

@@ -21,6 +21,7 @@ from laglab_gateway import (
     RandomFates,
     RecordedFates,
     TimelineError,
+    first_tick,
     read_link_log,
 )
 from laglab_gateway.link.fates import Fate, FateKind
@@ -163,6 +164,35 @@ def test_a_log_replays_to_the_same_link_on_another_run(tmp_path: Path) -> None:
     assert cross(again, 300) == first
     assert again.take_log() == log
     assert read_link_log(tmp_path / "link.csv", "measurement") == []
+
+
+def test_frames_that_enter_in_one_tick_are_replayed_each_as_its_own() -> None:
+    def through(line: Channel[Command]) -> list[tuple[int, int]]:
+        out = []
+        for tick in range(60):
+            for part in range(3):
+                line.push(tick, command(3 * tick + part))
+            out += [(crossing.message.tick, tick) for crossing in line.due(tick)]
+        return out
+
+    line = channel(Impairments(ExtraDelay("exponential", 0.02), loss=0.4))
+    first, log = through(line), line.take_log()
+    assert [row.frame for row in log] == [0, 1, 2] * 60
+    again: Channel[Command] = Channel("command", 0, TS, RecordedFates(log))
+    assert through(again) == first
+    assert again.take_log() == log
+
+
+@pytest.mark.parametrize("tick", [0, 1, 3, 7, 29, 57])
+def test_an_instant_belongs_to_the_tick_that_is_not_earlier(tick: int) -> None:
+    """Sums of doubles may be a little late: 0.1 + 0.2 is still tick 3."""
+    assert first_tick(sum([0.1] * tick), 0.1) == tick
+    assert first_tick(0.1 * tick + 0.001, 0.1) == tick + 1
+
+
+def test_frames_that_the_log_does_not_have_are_delivered_in_time() -> None:
+    again: Channel[Command] = Channel("command", 2, TS, RecordedFates([]))
+    assert cross(again, 5) == [(tick, tick + 2) for tick in range(5)]
 
 
 @pytest.mark.parametrize("text", ["", "a,b\n", "direction\ncommand\n", "\0"])

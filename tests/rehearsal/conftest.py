@@ -1,7 +1,6 @@
 """Runs of the real command, in a process of its own or in this one."""
 
 import json
-import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -17,17 +16,6 @@ Start = Callable[..., "subprocess.Popen[str]"]
 
 
 ROOT = Path(__file__).parents[2]
-
-
-@pytest.fixture
-def bare_clone(tmp_path: Path) -> Path:
-    """The files that git tracks, and no others."""
-    clone = tmp_path / "clone"
-    tracked = subprocess.check_output(["git", "ls-files", "-z"], cwd=ROOT, text=True)
-    for name in filter(None, tracked.split("\0")):
-        (clone / name).parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy(ROOT / name, clone / name)
-    return clone
 
 
 @pytest.fixture

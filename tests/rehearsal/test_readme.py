@@ -61,13 +61,15 @@ def test_the_two_sides_find_each_other(tmp_path: Path) -> None:
     assert (tmp_path / "runs" / "gateway" / "trace.csv").exists()
 
 
-def test_ci_runs_the_readmes_test_command() -> None:
+def test_ci_runs_the_commands_of_the_pages() -> None:
     script = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
-    (grep,) = re.findall(r"\$\((grep .*)\)", script)
-    found = subprocess.run(
-        ["bash", "-c", grep], cwd=ROOT, capture_output=True, text=True, check=True
-    )
-    assert found.stdout.strip() == INSTALL_AND_TEST
+    found = [
+        subprocess.run(["bash", "-c", grep], cwd=ROOT, capture_output=True, text=True, check=True)
+        for grep in re.findall(r"\$\((grep .*)\)", script)
+    ]
+    of_the_readme, of_contributing = (each.stdout.strip() for each in found)
+    assert of_the_readme == INSTALL_AND_TEST
+    assert of_contributing.startswith(".venv/bin/coverage run ")
 
 
 @pytest.mark.slow

@@ -1,0 +1,1 @@
+"""Tests of a release: slow, they build one."""
