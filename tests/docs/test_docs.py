@@ -20,7 +20,7 @@ from laglab_gateway import ROWS, TraceRow
 
 ROOT = Path(__file__).parents[2]
 COMPONENTS = ("fmu", "protocol", "gateway", "controller", "rehearsal", "examples", "tests")
-PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("*/*.md"), *ROOT.glob("examples/*/*.md")])
+PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("[a-z]*/**/*.md")])
 THEORY = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
 GLOSSARY = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")
 
@@ -74,12 +74,6 @@ def test_links_lead_somewhere(page: Path) -> None:
         target = (page.parent / place).resolve() if place else page
         assert target.exists(), link
         assert not anchor or anchor in anchors(target), link
-
-
-def test_the_readme_leads_to_every_page() -> None:
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    for page in ROOT.glob("docs/*.md"):
-        assert f"](docs/{page.name})" in readme
 
 
 @pytest.mark.parametrize("component", COMPONENTS)
@@ -144,7 +138,7 @@ def test_names_in_the_pages_exist(name: str) -> None:
 
 
 def commands() -> list[str]:
-    pages = list(ROOT.glob("docs/*.md"))
+    pages = list(ROOT.glob("docs/**/*.md"))
     found = [re.findall(r"`laglab ([a-z][^`]*)`", prose(page)) for page in pages]
     found += [re.findall(r"^laglab (.+)$", page.read_text("utf-8"), flags=re.M) for page in pages]
     return sorted({re.sub(r"\s+", " ", command) for each in found for command in each})
