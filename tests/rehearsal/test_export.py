@@ -1,7 +1,6 @@
 """A run in other programs' formats: they read back what it holds."""
 
 import csv
-import re
 import shutil
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,6 @@ import laglab
 from laglab.command import main
 from laglab.export import export
 from laglab.export.formats import FORMATS
-from laglab.export.reference import page
 from laglab.export.tables import tables
 from laglab.results.meaning import FILES, tick_columns
 from laglab.results.run import Run
@@ -190,15 +188,3 @@ def test_the_columns_are_those_of_the_files() -> None:
     rows = {TRACE_FILE: TraceRow._fields} | {name: kind._fields for name, kind in ROWS.items()}
     names = {name: tuple(each.name for each in columns) for name, columns in FILES.items()}
     assert names == rows | {"shadow-NAME.csv": COLUMNS}
-
-
-def test_the_reference_of_the_topics_is_up_to_date() -> None:
-    written = (DOCS / "reference" / "topics.md").read_text(encoding="utf-8")
-    assert written == page(), "run: python docs/reference/generate.py"
-
-
-def test_the_pages_example(capsys: pytest.CaptureFixture[str]) -> None:
-    text = (DOCS / "export.md").read_text(encoding="utf-8")
-    (block,) = re.findall(r"^```python\n(.*?)^```", text, re.DOTALL | re.M)
-    exec(block, {})
-    assert 'name = "lab"' in capsys.readouterr().out
