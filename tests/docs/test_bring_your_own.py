@@ -10,7 +10,7 @@ import pytest
 
 PAGE = (Path(__file__).parents[2] / "docs" / "bring-your-own.md").read_text("utf-8")
 FILES = re.findall(r"```python\n# (\w+\.py)\n(.*?)```", PAGE, flags=re.DOTALL)
-(WAY,) = re.findall(r"```csv\n(.*?)```", PAGE, flags=re.DOTALL)
+(WAY,) = re.findall(r"```text\n(time.*?)```", PAGE, flags=re.DOTALL)
 (TOML,) = re.findall(r"```toml\n(.*?)```", PAGE, flags=re.DOTALL)
 COMMANDS = re.findall(r"^    (laglab .*)$", PAGE, flags=re.MULTILINE)
 
