@@ -38,17 +38,16 @@ class Incoming:
         self._early: list[Planned] = []
         """Meant for later than when they came."""
 
-    def push(
-        self, elapsed: int, command: Command, plans: Iterable[Plan], recalls: Iterable[Recall]
-    ) -> None:
-        """Put a command on the link, with all that goes with it."""
+    def push(self, elapsed: int, command: Command, beside: Iterable[Recall | Plan]) -> None:
+        """Put a command on the link, with all that goes with it; the plan of another does not."""
         playout = self._playout
         until = command.tick - self.first + playout.bound if playout else math.inf
         self._channel.push(elapsed, command, until)
-        for recall in recalls:
-            self._channel.push(elapsed, recall)
-        for plan in plans:
-            self._channel.push(elapsed, plan, until)
+        for message in beside:
+            if isinstance(message, Recall):
+                self._channel.push(elapsed, message)
+            elif message.tick == command.tick:
+                self._channel.push(elapsed, message, until)
 
     def take(self, tick: int) -> Came:
         """What has come by `tick`."""

@@ -86,8 +86,8 @@ class RobotSide(ABC):
             "measurement", m, Ts, fates.get("measurement")
         )
         self._estimates: deque[Estimate] = deque(maxlen=UNANNOUNCED)
-        self._recalls: deque[Recall] = deque(maxlen=UNANNOUNCED)
-        self._plans: deque[Plan] = deque(maxlen=UNANNOUNCED)
+        self._beside: deque[Recall | Plan] = deque(maxlen=UNANNOUNCED)
+        """What goes with the command that is to come."""
         self._memory = SpeedMemory()
         self._owed = Owed()
         self._answered_through = -1
@@ -101,7 +101,7 @@ class RobotSide(ABC):
         self.tick = tick
         self._batch: list[Message] = []
         self._estimates.clear()
-        self._forget_beside()
+        self._beside.clear()
         self._command: Command | None = None
 
     @property
@@ -164,10 +164,8 @@ class RobotSide(ABC):
                 self.connected = True
             case Command() | Recall() | Plan() if not is_for_robot(message):
                 pass  # for another robot on the same line
-            case Plan():
-                self._plans.append(message)
-            case Recall():
-                self._recalls.append(message)
+            case Recall() | Plan():
+                self._beside.append(message)
             case Estimate() if message.tick == self.tick and not self.answered:
                 self._estimates.append(message)
             case Command() if message.tick == self.tick and not self.answered:
@@ -175,7 +173,7 @@ class RobotSide(ABC):
             case Command() if self._answered_through < message.tick < self.tick:
                 self._push(message)
             case Command():  # said again, or of a tick that has not come, as was asked before it
-                self._forget_beside()
+                self._beside.clear()
             case Estimate():
                 pass
             case Statustext():
@@ -200,10 +198,9 @@ class RobotSide(ABC):
         return self.services.answer(frame, self.state, asker)
 
     def _take_answer(self, command: Command) -> None:
-        came = len(self._estimates) + len(self._recalls) + len(self._plans)
-        if came < command.estimates:
+        if len(self._estimates) + len(self._beside) < command.estimates:
             self._estimates.clear()
-            self._forget_beside()
+            self._beside.clear()
             return  # a frame of this answer was lost: the repeat will bring it whole
         self._command = command
         self._push(command)
@@ -211,14 +208,8 @@ class RobotSide(ABC):
     def _push(self, command: Command) -> None:
         """Put it on the link, with what was said in the same breath, however late it comes."""
         self._answered_through = command.tick
-        plans = [plan for plan in self._plans if plan.tick == command.tick]
-        self._commands.push(self.elapsed, command, plans, self._recalls)
-        self._forget_beside()
-
-    def _forget_beside(self) -> None:
-        """What goes with a command that is over."""
-        self._recalls.clear()
-        self._plans.clear()
+        self._commands.push(self.elapsed, command, self._beside)
+        self._beside.clear()
 
     def _take_commands(self, tick: int) -> Came:
         """What has come across the link by `tick`; what cannot be followed any more is counted."""

@@ -27,6 +27,10 @@ class Environment:
         """Runs a command as a user types it: what it prints."""
         return said([self._bin / "laglab", *line.split()], self.folder)
 
+    def imports(self, module: str) -> None:
+        """Loads what no short command reaches."""
+        said([self._bin / "python", "-c", f"import {module}"], self.folder)
+
 
 def said(command: Sequence[str | Path], folder: Path) -> str:
     """Runs a command, which is to succeed: what it prints."""

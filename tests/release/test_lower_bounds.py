@@ -10,7 +10,7 @@ from .environments import Environment
 
 PYPROJECT = Path(__file__).parents[2] / "pyproject.toml"
 PROJECT = tomllib.loads(PYPROJECT.read_text("utf-8"))["project"]
-EXTRAS = ("run", "see", "conform", "export", "study")
+EXTRAS = ("run", "see", "conform", "export", "link", "study")
 STUDY = """
 scenario = "lab"
 seeds = 2
@@ -20,6 +20,7 @@ seeds = 2
 """
 COMMANDS = """
 run lab --duration 1 --transport serial --out serial
+run lab-car --duration 1 --out car
 run lab-radio --duration 1 --transport udp --out radio
 report fig6 radio --out both.html
 compare fig6 radio --out both.png
@@ -73,6 +74,7 @@ def test_the_oldest_that_are_allowed_do(
     (oldest.folder / "small.toml").write_text(STUDY)
     for command in ("run fig6 --out fig6", *COMMANDS.strip().splitlines()):
         oldest.laglab(command)
+    oldest.imports("laglab.link.importing.captures")
     here("run fig6 --out fig6")
     traces = [folder / "fig6" / "trace.csv" for folder in (oldest.folder, tmp_path)]
     assert traces[0].read_bytes() == traces[1].read_bytes()
