@@ -174,7 +174,7 @@ def test_the_schema_is_one_and_takes_what_we_take(printed: Printed) -> None:
         {"link": {"command_delay": -1}},
         {"link": {"command": {"loss": 7}}},
         {"link": {"event": [{"direction": "up"}]}},
-        {"estimator": {"kind": "best"}},
+        {"estimator": {"kind": 5}},
         {"estimator": {"compare": ["raw"]}},
         {"start": [1.0, 2.0]},
         {"law": {"gamma": 0}},

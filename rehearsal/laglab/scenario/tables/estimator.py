@@ -19,7 +19,9 @@ def comparable(name: str) -> str:
 
 COMPARABLE = [name for name, kind in ESTIMATORS.items() if kind.predicts]
 EstimatorName = Annotated[str, AfterValidator(known_estimator), offered(ESTIMATORS)]
-ComparedName = Annotated[str, AfterValidator(comparable), offered(COMPARABLE)]
+ComparedName = Annotated[
+    str, AfterValidator(comparable), offered(COMPARABLE, set(ESTIMATORS) - set(COMPARABLE))
+]
 
 
 class EstimatorTable(Table):

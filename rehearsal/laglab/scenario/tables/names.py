@@ -39,6 +39,8 @@ def known_law(name: str) -> str:
     return known("laglab.laws", name, LAWS)
 
 
-def offered(names: Iterable[str]) -> WithJsonSchema:
-    """For editors: the shipped names, and any other."""
-    return WithJsonSchema({"anyOf": [{"enum": list(names)}, {"type": "string"}]})
+def offered(names: Iterable[str], but: Iterable[str] = ()) -> WithJsonSchema:
+    """For editors, which do not know what is installed: the shipped names, and any other `but`
+    these."""
+    other = {"type": "string", "not": {"enum": list(but)}} if but else {"type": "string"}
+    return WithJsonSchema({"anyOf": [{"enum": list(names)}, other]})
