@@ -3,7 +3,7 @@
 from msgspec.structs import replace
 
 from laglab_conformance.items import Item
-from laglab_conformance.robot import CREEP, RobotSession, creep, creeps
+from laglab_conformance.robot import CREEP, RobotSession, creep, creeps, measurements
 from laglab_conformance.session import DoesNotApplyError
 from laglab_protocol.plans import Planned
 
@@ -20,11 +20,20 @@ def _reads_off(session: RobotSession) -> str | None:
     session.send(*frames, replace(plan.command, estimates=len(frames)))
     told = session.watch(creeps, session.waits.react)
     session.plans = told is not None
-    session.exchange()
+    _stand(session)
     if told is None and creep(session) is None:
         raise DoesNotApplyError(f"{CREEP} m/s it does not drive")
     session.exchange()
     return None if told else f"of command {stamp} nothing came into force but its first entry"
+
+
+def _stand(session: RobotSession) -> None:
+    """Until its measurements tell that it does: behind a delay they tell of the plan for longer."""
+    session.exchange()
+    for _ in range(session.longest_delay):
+        if measurements(session)[-1].v == 0.0:
+            break
+        session.exchange()
 
 
 def _whole_or_not(session: RobotSession) -> str | None:
@@ -37,7 +46,7 @@ def _whole_or_not(session: RobotSession) -> str | None:
     *frames, _ = Planned(command, stamp, creeping).frames()
     session.send(*frames, replace(command, estimates=len(frames)))
     told = session.watch(creeps, session.refusal)
-    session.exchange()
+    _stand(session)
     return f"command {stamp} is followed, of whose plan a frame is missing" if told else None
 
 
