@@ -18,11 +18,15 @@ def releasing(part: str) -> list[str]:
 
 def in_shell(command: str, folder: Path) -> subprocess.CompletedProcess[str]:
     """Runs such a line as a maintainer does, in the environment of the tests."""
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    settings = {
+        "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
+        # Each build compiles all by itself, and leaves nothing at home.
+        "ZIG_GLOBAL_CACHE_DIR": str(folder.parent / "zig"),
+    }
     return subprocess.run(
         ["bash", "-c", command],
         cwd=folder,
-        env=os.environ | {"PATH": path},
+        env=os.environ | settings,
         capture_output=True,
         text=True,
         check=False,
