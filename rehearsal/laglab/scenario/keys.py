@@ -43,7 +43,7 @@ def _key(attribute: str, info: FieldInfo) -> Key:
         attribute,
         extra["unit"],
         info.description or "",
-        info.get_default(call_default_factory=True),
+        info.get_default(call_default_factory=True, validated_data={}),
         table,
         table is not None and get_origin(info.annotation) is tuple,
     )
