@@ -7,7 +7,7 @@ from sphinx.application import Sphinx
 from laglab import __version__
 
 project = "laglab"
-project_copyright = "the laglab authors"
+project_copyright = "the laglab developers"
 release = version = __version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc"]

@@ -1,6 +1,7 @@
 """Write what is generated of the reference, beside this file: python docs/reference/generate.py"""
 
 import inspect
+import pkgutil
 from collections.abc import Callable, Iterator, Mapping
 from importlib import import_module
 from pathlib import Path
@@ -8,6 +9,7 @@ from xml.etree import ElementTree
 
 import typer
 
+import laglab
 from laglab.command import app
 from laglab.errors import LaglabError
 from laglab.export.reference import page as topics
@@ -77,6 +79,10 @@ def _commands(command: object, name: str) -> Iterator[str]:
 
 def errors() -> str:
     """The exit codes, and the trees of exceptions."""
+    for package in (laglab, *map(import_module, TREES)):
+        for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            if not module.name.endswith("__main__"):
+                import_module(module.name)  # or some of them are not known yet
     ours = "| `laglab` | exit code | |\n|---|---|---|\n" + "".join(
         f"| {'· ' * depth}`{kind.__name__}` | {kind.exit_code} | {_sentence(kind)} |\n"
         for depth, kind in _tree(LaglabError)

@@ -108,7 +108,7 @@ class Rig:
         ]
         self.plant = Still()
         settings = GatewayConfig(N, 0, 10**6, TS, **config)
-        self.gateway = Gateway(self.plant, settings, {"command": RecordedFates(rows)})
+        self.gateway = Gateway(self.plant, settings, {"command": RecordedFates(rows, range(10**6))})
         self.sender = Sender(STATION_SYSTEM, STATION_COMPONENT)
         self.echoed: list[int] = []
 

@@ -40,7 +40,7 @@ WRONG: list[tuple[Callable[..., object], str, list[object], str]] = [
     (Impairments, "burst", [3, "much"], "must be a table, not "),
     (Burst, "good_to_bad", [7, -0.1], "must be "),
     (ExtraDelay, "mean", [-0.1, NAN], "must be "),
-    (ExtraDelay, "distribution", ["gamma"], "must be 'constant', 'uniform', 'normal' or "),
+    (ExtraDelay, "distribution", ["gamma"], "must be 'constant', 'uniform', 'normal', "),
     (Event, "at", [-1.0, INF], "must be "),
     (Event, "duration", [0.0, -1.0, NAN], "must be "),
     (Event, "direction", ["up"], "must be 'command', 'measurement' or 'both', not 'up'"),

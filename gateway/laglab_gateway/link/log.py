@@ -57,7 +57,7 @@ class RecordedFates:
         frames = self._fates.get(tick)
         if frames is None:
             return [(FateKind.DELIVERED, 0.0)]
-        return frames[min(self._frame, max(frames))]
+        return frames.get(min(self._frame, max(frames)), [(FateKind.DELIVERED, 0.0)])
 
 
 def recorded_ticks(*directions: Sequence[LinkRow]) -> range:
