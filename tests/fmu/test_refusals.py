@@ -206,6 +206,8 @@ def test_a_wrong_token_makes_no_instance(
     face = make_face(name, kind)
     monkeypatch.setattr(face.fmu, "guid", "{another}")
     component = face.fmu.component
+    # FMPy's own logger for FMI 2 goes through what the last simulation in this process left
+    own = {"callbacks": face.fmu.callbacks} if face.version == 2 else {}
     with pytest.raises(Exception, match="Failed to instantiate"):
-        face.fmu.instantiate()
+        face.fmu.instantiate(**own)
     face.fmu.component = component

@@ -14,7 +14,7 @@ FRAMES = [row.raw for row in GOLDEN]
 
 
 def ours(datagrams: list[bytes]) -> list[bytes]:
-    receiver = Receiver()
+    receiver = Receiver(nested=True)  # also what stands in refused frames, as pymavlink
     frames = []
     for datagram in datagrams:
         frames += receiver.receive(datagram, whole=True)
