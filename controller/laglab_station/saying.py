@@ -25,8 +25,7 @@ def _planned(command: Command, control: Control) -> list[Message]:
     in_force = command.tick + control.flight.command_delay
     following = tuple((v, omega) for v, omega, _ in control.plan)
     frames = Planned(command, in_force, following).frames()
-    said_before = command.estimates + len(frames)
-    return [*frames, replace(command, estimates=said_before, plan=len(following))]
+    return [*frames, replace(command, plan=len(following))]
 
 
 def _estimate(tick: int, control: Control) -> list[Estimate]:

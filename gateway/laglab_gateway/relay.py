@@ -223,8 +223,8 @@ class Relay(RobotSide):
         if not self.services.arming.armed:
             planned = Planned(replace(command, v=0.0, omega=0.0, plan=0))
             self._drive = follow(command, self.tick + 1)  # and no plan
-        before = [*self._asks, *planned.frames()]
-        return [*before, replace(planned.command, estimates=len(before))]
+        command = replace(planned.command, estimates=len(self._asks))
+        return [*self._asks, *planned.frames(), command]
 
     def close_tick(self) -> TraceRow:
         """What happened at this tick; the next one, just heard, says what was in force."""

@@ -46,6 +46,7 @@ from laglab_protocol import (
     Settings,
     Statustext,
     Tick,
+    frames_of,
 )
 
 Cell = float | None
@@ -198,12 +199,18 @@ class RobotSide(ABC):
         return self.services.answer(frame, self.state, asker)
 
     def _take_answer(self, command: Command) -> None:
-        if len(self._estimates) + len(self._beside) < command.estimates:
+        if not self._is_whole(command):
             self._estimates.clear()
             self._beside.clear()
             return  # a frame of this answer was lost: the repeat will bring it whole
         self._command = command
         self._push(command)
+
+    def _is_whole(self, command: Command) -> bool:
+        """Whether all is here that was said before it."""
+        plans = sum(isinstance(each, Plan) for each in self._beside)
+        said = len(self._estimates) + len(self._beside) - plans
+        return said >= command.estimates and plans >= frames_of(command)
 
     def _push(self, command: Command) -> None:
         """Put it on the link, with what was said in the same breath, however late it comes."""

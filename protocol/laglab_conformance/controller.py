@@ -81,8 +81,9 @@ def _answers_whole(session: ControllerSession) -> str | None:
         assert isinstance(command, Command)
         if command.tick != tick or any(_stamp(each, tick) != tick for each in estimates):
             return f"tick {tick} is answered with other stamps: {command}"
-        if command.estimates != len(estimates):
-            return f"the command tells of {command.estimates} estimates, {len(estimates)} came"
+        came = sum(not isinstance(each, Plan) for each in estimates)
+        if command.estimates != came:
+            return f"the command tells of {command.estimates} estimates, {came} came"
     return None
 
 

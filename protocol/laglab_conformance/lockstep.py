@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from itertools import pairwise
 
-from msgspec.structs import replace
-
 from laglab_conformance.ending import ENDS, GIVES_UP
 from laglab_conformance.framing import RECEIVING, SENDING, SIGNING
 from laglab_conformance.items import SOON, Item, reacts_soon, refused
@@ -51,7 +49,7 @@ class LockstepSession(RobotSession):
             if found := next(filter(until, self.heard[seen:]), None):
                 return found
             later = Planned(self.command(self.tick, plan=1), self.tick + NEVER, ((0.0, 0.0),))
-            self.send(*later.frames(), replace(later.command, estimates=1))
+            self.send(*later.frames(), later.command)
         self.reacts(self.waits.react)
         return None
 

@@ -1,7 +1,5 @@
 """The items on plans: whether a robot goes on by one; whether a station's are whole."""
 
-from msgspec.structs import replace
-
 from laglab_conformance.items import Item
 from laglab_conformance.robot import CREEP, RobotSession, creep, creeps, measurements
 from laglab_conformance.session import DoesNotApplyError
@@ -16,8 +14,7 @@ def _reads_off(session: RobotSession) -> str | None:
     session.exchange()
     stamp, creeping = session.tick, ((CREEP, 0.0),) * LENGTH
     plan = Planned(session.command(stamp, plan=LENGTH), stamp, creeping)
-    frames = plan.frames()
-    session.send(*frames, replace(plan.command, estimates=len(frames)))
+    session.send(*plan.frames(), plan.command)
     told = session.watch(creeps, session.waits.react)
     session.plans = told is not None
     _stand(session)
@@ -44,7 +41,7 @@ def _whole_or_not(session: RobotSession) -> str | None:
     stamp, creeping = session.tick, ((CREEP, 0.0),) * LENGTH
     command = session.command(stamp, v=CREEP, plan=LENGTH)
     *frames, _ = Planned(command, stamp, creeping).frames()
-    session.send(*frames, replace(command, estimates=len(frames)))
+    session.send(*frames, command)
     told = session.watch(creeps, session.refusal)
     _stand(session)
     return f"command {stamp} is followed, of whose plan a frame is missing" if told else None

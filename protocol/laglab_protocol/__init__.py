@@ -117,7 +117,7 @@ from laglab_protocol.messages.standard import (
     SystemTime,
     Timesync,
 )
-from laglab_protocol.plans import Assembly, Planned
+from laglab_protocol.plans import Assembly, Planned, frames_of
 from laglab_protocol.playout import Playout
 from laglab_protocol.ration import LEAST_BYTES, Ration
 from laglab_protocol.refusals import Refusals
@@ -246,6 +246,7 @@ __all__ = [
     "decode",
     "differences",
     "frames_in",
+    "frames_of",
     "make_key",
     "message_type",
     "open_endpoint",

@@ -41,6 +41,11 @@ class Planned(NamedTuple):
         return plans
 
 
+def frames_of(command: Command) -> int:
+    """How many carry its plan."""
+    return -(-command.plan // PLANNED)
+
+
 class _Open(NamedTuple):
     command: Command | None
     frames: dict[int, Plan]

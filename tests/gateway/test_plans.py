@@ -128,7 +128,7 @@ class Rig:
 
 def said(plan: Planned) -> Sequence[Message]:
     frames = plan.frames()
-    return [*frames, Command(*plan.command.speeds, plan.tick, 1, 1, len(frames), len(plan[2]))]
+    return [*frames, Command(*plan.command.speeds, plan.tick, 1, 1, 0, len(plan[2]))]
 
 
 def newest(ticks: int, lost: set[int], length: int) -> Iterator[float]:

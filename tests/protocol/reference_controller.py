@@ -80,7 +80,7 @@ class Controller(Peer):
         if self.missed and self.fault != "does not ask":
             self.missed, estimate = False, Recall(0, 1, 1, 1)
         plans = self.plan(tick)
-        command = Command(v, 0.0, tick, target, 1, 1 + len(plans), PLAN)
+        command = Command(v, 0.0, tick, target, 1, 1, PLAN)
         twice = self.fault == "answers twice" and tick > 19
         said = [estimate, *plans, command]
         self.send(*said, *(said if twice else []))

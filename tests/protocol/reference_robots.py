@@ -102,7 +102,6 @@ class Robot(Peer):
             case Heartbeat() if self.tick is None:
                 self.begin()
             case Plan():
-                self.estimates += 1
                 self.hear_plan(message)
             case Estimate() | Recall():
                 self.estimates += 1

@@ -2,6 +2,7 @@
 
 import ast
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -35,6 +36,22 @@ def test_it_conforms(start_program: Callable[..., Any]) -> None:
 
     assert report.conforms, report.table()
     assert set(report.failed) == MISSED
+
+
+@pytest.mark.slow
+def test_a_station_that_plans_drives_it_though_it_passes_plans_over(
+    start_program: Callable[..., Any], tmp_path: Path
+) -> None:
+    with open_endpoint("udpin://127.0.0.1:0") as free:
+        url = free.name.replace("udpin", "udpout")
+    start_program(sys.executable, ROBOT, url.rpartition(":")[2])
+    station = "-m", "laglab", "controller", "lab", "--endpoint", url, "--out", "station"
+    planning = ("--set", "link.plan=30", "-n", "0", "-m", "0", "--silence", "20")
+    start_program(sys.executable, *station, *planning)
+    trace, deadline = tmp_path / "station" / "trace.csv", time.monotonic() + 30
+    while not trace.exists() or trace.read_text().count("\n") < 200:
+        assert time.monotonic() < deadline
+        time.sleep(0.1)
 
 
 def test_it_knows_nothing_of_laglab_but_the_generated_file() -> None:

@@ -6970,8 +6970,8 @@ class MAVLink_laglab_plan_message(MAVLink_message):
     """
     Station to robot: the speeds that are to follow a command if none
     newer comes. Sent before the LAGLAB_COMMAND with the same tick, in
-    as many frames as its plan needs, and counted there. A robot that
-    does not plan passes it over and follows the command alone.
+    as many frames as its plan needs, one for 15 ticks each. A robot
+    that does not plan passes it over and follows the command alone.
     """
 
     id = MAVLINK_MSG_ID_LAGLAB_PLAN
@@ -17840,7 +17840,7 @@ class MAVLink(object):
         tick                      : The tick that this command answers. (type:uint32_t)
         target_system             : System ID of the robot. (type:uint8_t)
         target_component          : Component ID of the robot. (type:uint8_t)
-        estimates                 : How many LAGLAB_ESTIMATE, LAGLAB_RECALL and LAGLAB_PLAN frames precede this message: 0 or 1 of each of the first two. (type:uint8_t)
+        estimates                 : How many LAGLAB_ESTIMATE and LAGLAB_RECALL frames precede this message: 0 or 1 of each. Those of LAGLAB_PLAN are not counted here: field plan tells of them. (type:uint8_t)
         plan                      : So many ticks beyond its own this command plans for, in LAGLAB_PLAN frames: it is followed with all of them or not at all. 0: there is no plan. (type:uint16_t)
 
         """
@@ -17856,7 +17856,7 @@ class MAVLink(object):
         tick                      : The tick that this command answers. (type:uint32_t)
         target_system             : System ID of the robot. (type:uint8_t)
         target_component          : Component ID of the robot. (type:uint8_t)
-        estimates                 : How many LAGLAB_ESTIMATE, LAGLAB_RECALL and LAGLAB_PLAN frames precede this message: 0 or 1 of each of the first two. (type:uint8_t)
+        estimates                 : How many LAGLAB_ESTIMATE and LAGLAB_RECALL frames precede this message: 0 or 1 of each. Those of LAGLAB_PLAN are not counted here: field plan tells of them. (type:uint8_t)
         plan                      : So many ticks beyond its own this command plans for, in LAGLAB_PLAN frames: it is followed with all of them or not at all. 0: there is no plan. (type:uint16_t)
 
         """
@@ -18030,9 +18030,9 @@ class MAVLink(object):
         """
         Station to robot: the speeds that are to follow a command if none
         newer comes. Sent before the LAGLAB_COMMAND with the same
-        tick, in as many frames as its plan needs, and counted there.
-        A robot that does not plan passes it over and follows the
-        command alone.
+        tick, in as many frames as its plan needs, one for 15 ticks
+        each. A robot that does not plan passes it over and follows
+        the command alone.
 
         v                         : Forward speeds. [m/s] (type:double)
         omega                     : Turn rates, counter-clockwise positive. [rad/s] (type:double)
@@ -18049,9 +18049,9 @@ class MAVLink(object):
         """
         Station to robot: the speeds that are to follow a command if none
         newer comes. Sent before the LAGLAB_COMMAND with the same
-        tick, in as many frames as its plan needs, and counted there.
-        A robot that does not plan passes it over and follows the
-        command alone.
+        tick, in as many frames as its plan needs, one for 15 ticks
+        each. A robot that does not plan passes it over and follows
+        the command alone.
 
         v                         : Forward speeds. [m/s] (type:double)
         omega                     : Turn rates, counter-clockwise positive. [rad/s] (type:double)
