@@ -165,6 +165,7 @@ def test_a_run_with_a_real_robot_says_that_its_pose_is_measured(
     assert (tmp_path / "run" / "figure.png").exists()
 
 
+@pytest.mark.slow
 def test_a_dead_robot_is_named_by_its_link_and_the_station_is_told(
     rig: Callable[..., Rig], tmp_path: Path
 ) -> None:

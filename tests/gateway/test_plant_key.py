@@ -73,6 +73,7 @@ def test_a_signed_robot_runs_a_scenario_to_its_end(
     assert "frames refused" not in robot.communicate(timeout=5)[1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("ours", "why"),
     [

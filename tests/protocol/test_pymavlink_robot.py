@@ -38,6 +38,10 @@ def test_it_conforms(start_program: Callable[..., Any]) -> None:
     assert set(report.failed) == MISSED
 
 
+MANY_TICKS = 200_000
+"""Bytes of a log: some hundred ticks."""
+
+
 @pytest.mark.slow
 def test_a_station_that_plans_drives_it_though_it_passes_plans_over(
     start_program: Callable[..., Any], tmp_path: Path
@@ -47,9 +51,10 @@ def test_a_station_that_plans_drives_it_though_it_passes_plans_over(
     start_program(sys.executable, ROBOT, url.rpartition(":")[2])
     station = "-m", "laglab", "controller", "lab", "--endpoint", url, "--out", "station"
     planning = ("--set", "link.plan=30", "-n", "0", "-m", "0", "--silence", "20")
-    start_program(sys.executable, *station, *planning)
-    trace, deadline = tmp_path / "station" / "trace.csv", time.monotonic() + 30
-    while not trace.exists() or trace.read_text().count("\n") < 200:
+    running = start_program(sys.executable, *station, *planning)
+    log, deadline = tmp_path / "station" / "robot.tlog", time.monotonic() + 30
+    while not log.exists() or log.stat().st_size < MANY_TICKS:
+        assert running.poll() is None, running.communicate()
         assert time.monotonic() < deadline
         time.sleep(0.1)
 

@@ -361,6 +361,7 @@ def test_a_comparison_that_fails_costs_the_run_nothing(laglab: Laglab, mine: Pat
     assert len(rows) == 1 + 40
 
 
+@pytest.mark.slow
 def test_they_are_replayed_judged_and_studied(laglab: Laglab, mine: Path) -> None:
     short = ("--transport", "inline", "--out", "run")
     assert laglab("run", "lab", "--duration", "1", *short).returncode == 0

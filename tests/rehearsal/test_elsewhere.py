@@ -148,6 +148,7 @@ def test_what_an_export_needs_is_said(tmp_path: Path) -> None:
     assert {path.name for path in tmp_path.iterdir()} == {"hiding", "run", "run-csv"}
 
 
+@pytest.mark.slow
 def test_without_fmpy_runs_are_compared_and_replayed(no_fmpy: Python, laglab: Python) -> None:
     """And what steps the FMU says what to install, to somebody who has a wheel and no clone."""
     made = laglab("run", "fig6", "--duration", "0.5", "--transport", "inline", "--out", "run")

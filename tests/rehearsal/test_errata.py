@@ -1,5 +1,6 @@
 """``laglab errata``: each misprint on its own, and all together."""
 
+import pytest
 from msgspec.structs import astuple
 
 from laglab.scenario import load
@@ -7,6 +8,7 @@ from laglab.studies.errata import VARIANTS, costs
 from laglab_control import Erratum
 
 
+@pytest.mark.slow
 def test_what_each_misprint_costs():
     """Without noise only the innovation of (28) shows: it alone keeps the robot from its goal."""
     rows = dict(zip(VARIANTS, costs(load("fig8", {"duration": 5.0}), seeds=1), strict=True))

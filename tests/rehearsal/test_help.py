@@ -71,6 +71,7 @@ def test_shells_complete_commands_scenarios_and_estimators(
     assert set(said([], capsys).split()) == offered
 
 
+@pytest.mark.slow
 def test_no_table_is_wider_than_80_columns(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -18,6 +18,7 @@ Laglab = Callable[..., subprocess.CompletedProcess[str]]
 Rehearsed = Callable[..., dict[str, Any]]
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_link_on_every_transport(
     laglab: Laglab, tmp_path: Path
 ) -> None:

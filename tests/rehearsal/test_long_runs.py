@@ -82,6 +82,7 @@ def ticks(run: Run) -> Iterable[object]:
     return tables(run).ticks.pieces
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("read", [ticks, said])
 def test_exports_never_hold_the_whole_run(
     read: Read,

@@ -143,6 +143,7 @@ def free_port() -> int:
         return int(endpoint.name.rpartition(":")[2])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("transport", ["udpin", "udpout", "pty"])
 @pytest.mark.parametrize("pace", ["lockstep", "realtime"])
 def test_a_robot_that_begins_again_is_met_anew(
@@ -172,6 +173,7 @@ def has_answered(folder: Path) -> bool:
     return log.exists() and log.stat().st_size > 2000
 
 
+@pytest.mark.slow
 def test_a_displaced_station_is_told_and_can_come_back(
     start: Start, listening_port: ListeningPort, tmp_path: Path
 ) -> None:

@@ -105,6 +105,7 @@ def test_generate_writes_python_that_speaks_our_dialect(laglab: Laglab, tmp_path
     assert said.strip() == "52100"
 
 
+@pytest.mark.slow
 def test_our_robot_conforms(
     laglab: Laglab, start: Start, listening_port: ListeningPort, tmp_path: Path
 ) -> None:
@@ -118,6 +119,7 @@ def test_our_robot_conforms(
     assert suite.get("failures") == "0"
 
 
+@pytest.mark.slow
 def test_nobody_there_does_not_conform(laglab: Laglab) -> None:
     result = laglab("conform", "udpout://127.0.0.1:9", "--side", "robot")
     assert result.returncode == 1

@@ -49,6 +49,7 @@ def test_the_mathematics_load_numpy_and_little_else() -> None:
     assert done.stdout == "[]\n"
 
 
+@pytest.mark.slow
 def test_a_plain_script_needs_no_guard_and_prints_nothing_of_ours(tmp_path: Path) -> None:
     """The blocks of the pages one after the other, then runs over UDP and a pty."""
     script = tmp_path / "plain.py"
@@ -68,6 +69,7 @@ def test_a_plain_script_needs_no_guard_and_prints_nothing_of_ours(tmp_path: Path
     assert (tmp_path / "fig8.pdf").read_bytes().startswith(b"%PDF")
 
 
+@pytest.mark.slow
 def test_a_notebook(tmp_path: Path) -> None:
     """With a cell for each block; a run over UDP from a notebook too; figures show themselves."""
     cells = [*BLOCKS, 'laglab.run("fig6", {"duration": 0.5}, transport="udp").figure()']

@@ -36,6 +36,7 @@ def ended(process: "subprocess.Popen[str]", within: float) -> str:
     return errors
 
 
+@pytest.mark.slow
 def test_lockstep_across_a_line_of_57600_baud(start: Start, laglab: Laglab, tmp_path: Path) -> None:
     options = ("lab", "-m", "0", "--duration", "0.4")
     assert laglab("run", *options, "--transport", "inline", "--out", "calm").returncode == 0

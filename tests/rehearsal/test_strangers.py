@@ -142,6 +142,7 @@ def speaking(port: int) -> Iterator[Callable[..., bytes]]:
         yield say
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("signed", [False, True])
 def test_a_flood_on_both_ports_changes_nothing(start: Start, tmp_path: Path, signed: bool) -> None:
     """Of everything; at a pace that leaves the machine to others, for these tests share it."""
