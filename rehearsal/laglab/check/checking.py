@@ -9,7 +9,7 @@ from laglab.check.subject import KINDS, SHIPPED, Kind, maker_of
 from laglab_control import ESTIMATORS, Circle, Law, PluginFailedError, PolarLaw
 from laglab_control.estimators.family import estimator_kind
 from laglab_control.laws import brought_law, tracking_law
-from laglab_control.plugins import called, find_plugin, made, refuse_misfit
+from laglab_control.plugins import called, find_plugin, made, refuse_misfit, shown
 from laglab_gateway import Plant, Reading
 
 Options = Mapping[str, object]
@@ -85,19 +85,19 @@ class Watched(Plant):
 
     def read(self) -> Reading:
         """Its answer as a reading."""
-        answer = called(self._name, self._one.read)
+        answer = called(self._name, self._one, "read")
         try:
             return Reading(*map(float, answer))
         except (TypeError, ValueError):
             wanted = ", ".join(Reading._fields)
             raise PluginFailedError(
-                f"{self._name}.read must answer {wanted}, not {answer!r:.60}"
+                f"{self._name}.read must answer {wanted}, not {shown(answer)}"
             ) from None
 
     def step(self, v: float, omega: float) -> None:
         """One tick."""
-        called(self._name, self._one.step, v, omega)
+        called(self._name, self._one, "step", v, omega)
 
     def place(self, x: float, y: float, theta: float) -> None:
         """Elsewhere."""
-        called(self._name, self._one.place, x, y, theta)
+        called(self._name, self._one, "place", x, y, theta)
