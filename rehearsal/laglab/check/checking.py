@@ -1,11 +1,14 @@
 """Each kind of thing through its checks."""
 
 from collections.abc import Iterator, Mapping
+from contextlib import ExitStack
 from typing import Any
 
 from laglab.check import estimator, law, plant
 from laglab.check.finding import Finding, findings
 from laglab.check.subject import KINDS, SHIPPED, Kind, maker_of
+from laglab.runs.plant import open_plant
+from laglab.scenario import Scenario, changed
 from laglab_control import ESTIMATORS, Circle, Law, PluginFailedError, PolarLaw
 from laglab_control.estimators.family import estimator_kind
 from laglab_control.laws import brought_law, tracking_law
@@ -29,7 +32,7 @@ def checked(kind: Kind, name: str, options: Options | None = None) -> Iterator[F
         case "law":
             return findings(law.CHECKS, lambda: _law(name, told), _admits("law", name))
         case "plant":
-            return findings(plant.CHECKS, lambda: _plant(name, told), _admits("plant", name))
+            return _plants(name, told)
 
 
 def _admits(kind: Kind, name: str) -> Mapping[str, str]:
@@ -60,6 +63,32 @@ def _law(name: str, options: dict[str, object]) -> Law:
     if name == "tracking":
         return tracking_law(Circle(law.GOAL[:2], 1.0, 0.5), options)
     return brought_law(name, law.GOAL, options)
+
+
+def _plants(name: str, options: dict[str, object]) -> Iterator[Finding]:
+    with ExitStack() as opened:
+        ours = name in SHIPPED["plant"]
+        yield from findings(
+            plant.CHECKS,
+            lambda: _shipped(name, options, opened) if ours else _plant(name, options),
+            _admits("plant", name),
+        )
+
+
+def _shipped(name: str, options: dict[str, object], opened: ExitStack) -> plant.Subject:
+    """One of ours; however many are made, all are open until the last check is done."""
+    table = "plant." if name == "robot" else "plant.parameters."
+    scenario = changed(
+        Scenario(name=name),
+        {
+            "plant.kind": name,
+            "sample_time": plant.SAMPLE_TIME,
+            "start": list(plant.START),
+            "seed": plant.SEED,
+            **{table + key: value for key, value in options.items()},
+        },
+    )
+    return plant.Subject(lambda: opened.enter_context(open_plant(scenario)).plant)
 
 
 def _plant(name: str, options: dict[str, object]) -> plant.Subject:
