@@ -2,7 +2,7 @@
 
 import inspect
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
@@ -12,6 +12,8 @@ from typing import Any, Literal, NamedTuple, Protocol
 
 from laglab_control.errors import ControlError, StampError
 
+SHOWN, LONGEST = 60, 400
+"""[characters] Of an answer that is wrong, and of what an exception says."""
 HERE = ""
 """The current directory, in Python's search path: last, so that nothing there hides a library."""
 Group = Literal["laglab.estimators", "laglab.laws", "laglab.plants"]
@@ -96,13 +98,18 @@ def made(name: str, maker: Maker, *told: object, **options: object) -> object:
     """What the class makes of it. Raises PluginError when it refuses."""
     try:
         return maker(*told, **options)
-    except Exception as error:  # it is a stranger's
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # it is a stranger's
         raise PluginError(f"{name} cannot be made: {one_line(error)}") from error
 
 
 def refuse_misfit(name: str, brought: object, method: str, *parameters: str) -> None:
     """Raises PluginError unless it has a method that can be given so much."""
-    function = getattr(brought, method, None)
+    try:
+        function = getattr(brought, method, None)
+    except Exception as error:
+        raise PluginError(f"{name}.{method}: {one_line(error)}") from error
     wanted = f"{method}({', '.join(parameters)})"
     if not callable(function):
         raise PluginError(f"{name} has no method {wanted}")
@@ -114,14 +121,16 @@ def refuse_misfit(name: str, brought: object, method: str, *parameters: str) -> 
         return  # it is not written in Python: time will tell
 
 
-def called(name: str, method: Callable[..., object], *told: object) -> Any:
+def called(name: str, brought: object, method: str, *told: object) -> Any:
     """What the method of a stranger's answers. Raises PluginFailedError when it fails."""
     try:
-        return method(*told)
-    except StampError:
-        raise  # as an estimator must
-    except (Exception, SystemExit) as error:
-        raise PluginFailedError(f"{name}.{method.__name__}: {one_line(error)}") from error
+        return getattr(brought, method)(*told)
+    except (StampError, KeyboardInterrupt):
+        raise  # as an estimator must; and nobody's fault
+    except (
+        BaseException
+    ) as error:  # GeneratorExit and SystemExit too: it is to end no more than this
+        raise PluginFailedError(f"{name}.{method}: {one_line(error)}") from error
 
 
 @contextmanager
@@ -134,8 +143,28 @@ def at_tick(tick: int) -> Iterator[None]:
 
 
 def one_line(error: BaseException) -> str:
-    """Kind and text."""
-    return " ".join(f"{type(error).__name__}: {error}".split()).rstrip(": ")
+    """Kind and text, as far as it can be told."""
+    try:
+        text = str(error)
+    except Exception:  # a stranger's, too
+        text = ""
+    kind = type(error).__name__
+    return _short(f"{kind}: {text}" if text else kind, LONGEST)
+
+
+def shown(answer: object) -> str:
+    """What was answered, in a line."""
+    try:
+        text = repr(answer)
+    except Exception:
+        text = f"an object of {type(answer).__name__}"
+    return _short(text, SHOWN)
+
+
+def _short(text: str, longest: int) -> str:
+    """In one line that changes no terminal."""
+    line = " ".join("".join(each if each.isprintable() else " " for each in text).split())
+    return line if len(line) <= longest else f"{line[:longest]}..."
 
 
 def first_line(made_by: object) -> str:
@@ -150,13 +179,12 @@ def _loaded(entry: EntryPoint, name: str) -> Maker:
         found: object = import_module(module)
         for part in attribute.split("."):
             found = getattr(found, part)
-    except (
-        Exception,
-        SystemExit,
-    ) as error:  # as strangers do
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # as strangers do
         raise PluginError(f"{name}: {one_line(error)}") from error
     if not callable(found):
-        raise PluginError(f"{name}: {entry.value} is no class, but {found!r}")
+        raise PluginError(f"{name}: {entry.value} is no class, but {shown(found)}")
     return found
 
 

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import TypeVar
 
-from rich.console import Console
 from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
@@ -24,6 +23,7 @@ from rich.text import Text
 
 from laglab.runs.glance import Glance, Told
 from laglab.scenario import Scenario
+from laglab.tables import terminal
 
 T = TypeVar("T")
 PACE_WINDOW = 300.0
@@ -166,7 +166,7 @@ def _bar(unit: str, shown: bool = True) -> Progress:
     """So many done of so many to do, if that is known; how fast, and how long it takes still."""
     name, done = TextColumn("{task.description}", markup=False), MofNCompleteColumn()
     share = TaskProgressColumn(text_format_no_percentage="")
-    width = Console(stderr=True).width
+    width = terminal(stderr=True).width
     if width < NARROW:
         return _shown(name, share, shown=shown)
     if width < ROOMY:
@@ -185,7 +185,7 @@ def _bar(unit: str, shown: bool = True) -> Progress:
 def _shown(
     *columns: ProgressColumn, transient: bool = False, shown: bool = True, window: float = 30.0
 ) -> Progress:
-    console = Console(stderr=True)
+    console = terminal(stderr=True)
     return Progress(
         *columns,
         console=console,

@@ -1,6 +1,13 @@
 """Every table of the command line: one style, within 80 columns, readable in narrower ones."""
 
+from rich.console import Console
 from rich.table import Table
+
+
+def terminal(stderr: bool = False) -> Console:
+    """Where commands print. What others have written, names and messages, is printed as it is:
+    brackets in it are no markup, nor colons an emoji."""
+    return Console(stderr=stderr, markup=False, emoji=False)
 
 
 def plain_table(*headings: str, title: str = "", caption: str = "", headed: bool = True) -> Table:

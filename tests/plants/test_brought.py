@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from laglab import run
+from laglab.check import checked
 from laglab.command import main
 from laglab.errors import RunError
 from laglab_gateway import read_trace
@@ -73,6 +74,11 @@ def laglab(tmp_path: Path) -> Laglab:
         )
 
     return call
+
+
+def test_the_page_s_robot_keeps_the_interface(ice: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ice)
+    assert {finding.held for finding in checked("plant", "ice:Skater")} == {"yes"}
 
 
 def test_the_page_s_robot_runs_the_same_by_every_way(ice: Path, laglab: Laglab) -> None:

@@ -10,6 +10,7 @@ from laglab.check.finding import all_hold
 from laglab.check.subject import Kind, kind_of
 from laglab.command import main
 from laglab.errors import ScenarioError
+from laglab.scenario.tables.plant import SHIPPED as PLANTS
 from laglab_control import ESTIMATORS, LAWS, PluginError
 
 BROKEN = '''
@@ -231,6 +232,14 @@ class RightPlant:
         self.sense()
 
 
+class Plain(RightPlant):
+    """Nobody tells it of NaN."""
+
+    def place(self, x, y, theta):
+        self.pose, self.speeds = [x, y, theta], (0.0, 0.0)
+        self.sense()
+
+
 class ShortReading(RightPlant):
     def read(self):
         return self.pose
@@ -309,7 +318,15 @@ def test_the_laws_that_ship_keep_the_interface(name: str) -> None:
     assert {finding.held for finding in checked("law", name)} == {"yes"}
 
 
-@pytest.mark.parametrize(("kind", "name"), [("law", "RightLaw"), ("plant", "RightPlant")])
+@pytest.mark.parametrize("name", PLANTS)
+def test_the_plants_that_ship_keep_the_interface(name: str) -> None:
+    assert kind_of(name, None) == "plant"
+    assert {finding.held for finding in checked("plant", name)} == {"yes"}
+
+
+@pytest.mark.parametrize(
+    ("kind", "name"), [("law", "RightLaw"), ("plant", "RightPlant"), ("plant", "Plain")]
+)
 def test_what_is_right_passes(
     broken: Path, monkeypatch: pytest.MonkeyPatch, kind: Kind, name: str
 ) -> None:
@@ -384,7 +401,7 @@ def test_the_command_says_it_in_a_table_and_an_exit_code(
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["nobody"], "nobody is none of the three by its methods: say which, with --as"),
+        (["nobody"], "no estimator, law or plant 'nobody': take one of raw, ekf"),
         (["broken_parts:made_by_a_function"], "say which, with --as estimator|law|plant"),
         (["broken_parts:Nobody"], "broken_parts:Nobody: AttributeError"),
         (["nobody", "--as", "law"], "no law 'nobody': take one of polar, tracking"),

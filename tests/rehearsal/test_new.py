@@ -98,6 +98,9 @@ def test_each_template_keeps_its_interface(
         ("-x", "No such option"),
         ("class", "Python has something of that name already"),
         ("numpy", "Python has something of that name already"),
+        ("delayed-ekf", "laglab has something of that name already"),
+        ("polar", "laglab has something of that name already"),
+        ("car", "laglab has something of that name already"),
         ("there", "there cannot be made: File exists"),
     ],
 )

@@ -17,7 +17,7 @@ from laglab_control.estimators.interface import (
 )
 from laglab_control.estimators.kalman import Innovation
 from laglab_control.model import Matrix, Vector
-from laglab_control.plugins import Maker, PluginFailedError, called, made, refuse_misfit
+from laglab_control.plugins import Maker, PluginFailedError, called, made, refuse_misfit, shown
 from laglab_control.robot import RobotModel, Ways
 
 METHODS = {
@@ -106,7 +106,7 @@ class Brought(Estimator[State]):
             return None if answer is None else Innovation(*answer)
         except TypeError:
             raise self._failed(
-                "innovation", f"a value and its S, or None, not {answer!r}"
+                "innovation", f"a value and its S, or None, not {shown(answer)}"
             ) from None
 
     def warning(self, state: State) -> str | None:
@@ -126,16 +126,19 @@ class Brought(Estimator[State]):
         answer = self._said("ahead", state, list(inputs))
         if answer is None:
             return None
-        pose = np.asarray(answer)
+        try:
+            pose = np.asarray(answer)
+        except Exception:  # of rows of several lengths, or what has an __array__ of its own
+            pose = np.empty(0)
         if pose.shape != (3,) or not _is_finite(pose):
-            raise self._failed("ahead", f"a finite pose (3,), not {pose.tolist()}")
+            raise self._failed("ahead", f"a finite pose (3,), not {shown(answer)}")
         return pose
 
     def _has(self, method: str) -> bool:
         return hasattr(self.estimator, method)
 
     def _said(self, method: str, *told: object) -> Any:
-        return called(self.name, getattr(self.estimator, method), *told)
+        return called(self.name, self.estimator, method, *told)
 
     def _failed(self, method: str, wanted: str) -> PluginFailedError:
         return PluginFailedError(f"{self.name}.{method} must answer {wanted}")
@@ -144,9 +147,9 @@ class Brought(Estimator[State]):
         try:
             there = state.tick
         except AttributeError:
-            raise self._failed(method, f"a state with tick, x and P, not {state!r:.60}") from None
+            raise self._failed(method, f"a state with tick, x and P, not {shown(state)}") from None
         if there != tick:
-            raise self._failed(method, f"a state of tick {tick}, not {there!r}")
+            raise self._failed(method, f"a state of tick {tick}, not {shown(there)}")
         return state
 
     def _whole(self, method: str, state: State, tick: int) -> State:
@@ -158,13 +161,13 @@ class Brought(Estimator[State]):
         if x is None:
             return state
         if not isinstance(x, np.ndarray) or x.ndim != 1 or not _is_finite(x):
-            raise self._failed(method, f"a finite array x (d,), not {x!r:.60}")
+            raise self._failed(method, f"a finite array x (d,), not {shown(x)}")
         if not isinstance(pose, np.ndarray) or pose.shape != (3,) or not _is_finite(pose):
-            raise self._failed(method, f"a finite pose (3,), not {pose!r:.60}")
+            raise self._failed(method, f"a finite pose (3,), not {shown(pose)}")
         if P is not None and not (
             isinstance(P, np.ndarray) and P.shape == (len(x), len(x)) and _is_finite(P)
         ):
-            raise self._failed(method, f"a finite P {(len(x), len(x))} or None, not {P!r:.60}")
+            raise self._failed(method, f"a finite P {(len(x), len(x))} or None, not {shown(P)}")
         return state
 
 

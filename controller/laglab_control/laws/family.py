@@ -10,7 +10,14 @@ from laglab_control.laws.interface import Demand, Law
 from laglab_control.laws.paths import Path
 from laglab_control.laws.tracking import TrackingLaw
 from laglab_control.motion import Way
-from laglab_control.plugins import PluginFailedError, called, find_plugin, made, refuse_misfit
+from laglab_control.plugins import (
+    PluginFailedError,
+    called,
+    find_plugin,
+    made,
+    refuse_misfit,
+    shown,
+)
 
 LAWS: Mapping[str, str] = {
     "polar": "drives to the goal in polar coordinates, as the paper's",
@@ -46,13 +53,13 @@ class BroughtLaw(Law):
 
     def drive(self, pose: Way[float], time: float, memory: object) -> Demand:
         """Raises PluginFailedError: it fails, or answers no two finite numbers and a memory."""
-        answer = called(self.name, self.law.drive, pose, time, memory)
+        answer = called(self.name, self.law, "drive", pose, time, memory)
         try:
             v, omega, memory = answer
             demand = Demand(float(v), float(omega), memory)
         except (TypeError, ValueError):
             raise PluginFailedError(
-                f"{self.name}.drive: must answer v, omega and a memory, not {answer!r}"
+                f"{self.name}.drive: must answer v, omega and a memory, not {shown(answer)}"
             ) from None
         if not (math.isfinite(demand.v) and math.isfinite(demand.omega)):
             raise PluginFailedError(

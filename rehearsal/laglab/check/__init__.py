@@ -2,6 +2,15 @@
 
 from laglab.check.checking import checked
 from laglab.check.finding import Finding, all_hold, findings_table
-from laglab.check.subject import KINDS, Kind, kind_of
+from laglab.check.subject import KINDS, SHIPPED, Kind, kind_of
 
-__all__ = ["KINDS", "Finding", "Kind", "all_hold", "checked", "findings_table", "kind_of"]
+__all__ = [
+    "KINDS",
+    "SHIPPED",
+    "Finding",
+    "Kind",
+    "all_hold",
+    "checked",
+    "findings_table",
+    "kind_of",
+]

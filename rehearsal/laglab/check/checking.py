@@ -1,15 +1,18 @@
 """Each kind of thing through its checks."""
 
 from collections.abc import Iterator, Mapping
+from contextlib import ExitStack
 from typing import Any
 
 from laglab.check import estimator, law, plant
 from laglab.check.finding import Finding, findings
 from laglab.check.subject import KINDS, SHIPPED, Kind, maker_of
+from laglab.runs.plant import open_plant
+from laglab.scenario import Scenario, changed
 from laglab_control import ESTIMATORS, Circle, Law, PluginFailedError, PolarLaw
 from laglab_control.estimators.family import estimator_kind
 from laglab_control.laws import brought_law, tracking_law
-from laglab_control.plugins import called, find_plugin, made, refuse_misfit
+from laglab_control.plugins import called, find_plugin, made, refuse_misfit, shown
 from laglab_gateway import Plant, Reading
 
 Options = Mapping[str, object]
@@ -29,7 +32,7 @@ def checked(kind: Kind, name: str, options: Options | None = None) -> Iterator[F
         case "law":
             return findings(law.CHECKS, lambda: _law(name, told), _admits("law", name))
         case "plant":
-            return findings(plant.CHECKS, lambda: _plant(name, told), _admits("plant", name))
+            return _plants(name, told)
 
 
 def _admits(kind: Kind, name: str) -> Mapping[str, str]:
@@ -62,6 +65,32 @@ def _law(name: str, options: dict[str, object]) -> Law:
     return brought_law(name, law.GOAL, options)
 
 
+def _plants(name: str, options: dict[str, object]) -> Iterator[Finding]:
+    with ExitStack() as opened:
+        ours = name in SHIPPED["plant"]
+        yield from findings(
+            plant.CHECKS,
+            lambda: _shipped(name, options, opened) if ours else _plant(name, options),
+            _admits("plant", name),
+        )
+
+
+def _shipped(name: str, options: dict[str, object], opened: ExitStack) -> plant.Subject:
+    """One of ours; however many are made, all are open until the last check is done."""
+    table = "plant." if name == "robot" else "plant.parameters."
+    scenario = changed(
+        Scenario(name=name),
+        {
+            "plant.kind": name,
+            "sample_time": plant.SAMPLE_TIME,
+            "start": list(plant.START),
+            "seed": plant.SEED,
+            **{table + key: value for key, value in options.items()},
+        },
+    )
+    return plant.Subject(lambda: opened.enter_context(open_plant(scenario)).plant)
+
+
 def _plant(name: str, options: dict[str, object]) -> plant.Subject:
     maker = maker_of("plant", name)
 
@@ -85,19 +114,19 @@ class Watched(Plant):
 
     def read(self) -> Reading:
         """Its answer as a reading."""
-        answer = called(self._name, self._one.read)
+        answer = called(self._name, self._one, "read")
         try:
             return Reading(*map(float, answer))
         except (TypeError, ValueError):
             wanted = ", ".join(Reading._fields)
             raise PluginFailedError(
-                f"{self._name}.read must answer {wanted}, not {answer!r:.60}"
+                f"{self._name}.read must answer {wanted}, not {shown(answer)}"
             ) from None
 
     def step(self, v: float, omega: float) -> None:
         """One tick."""
-        called(self._name, self._one.step, v, omega)
+        called(self._name, self._one, "step", v, omega)
 
     def place(self, x: float, y: float, theta: float) -> None:
         """Elsewhere."""
-        called(self._name, self._one.place, x, y, theta)
+        called(self._name, self._one, "place", x, y, theta)

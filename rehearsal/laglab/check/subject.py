@@ -4,8 +4,9 @@ from collections.abc import Iterator, Mapping
 from typing import Literal
 
 from laglab.errors import ScenarioError
+from laglab.scenario.tables.plant import SHIPPED as PLANTS
 from laglab_control import ESTIMATORS, LAWS, PluginError, find_plugin, is_module_class
-from laglab_control.plugins import Group, Maker
+from laglab_control.plugins import Group, Maker, installed_plugins
 
 Kind = Literal["estimator", "law", "plant"]
 KINDS: Mapping[Kind, Group] = {
@@ -21,7 +22,7 @@ METHODS: Mapping[Kind, tuple[str, ...]] = {
 SHIPPED: Mapping[Kind, tuple[str, ...]] = {
     "estimator": tuple(ESTIMATORS),
     "law": tuple(LAWS),
-    "plant": (),
+    "plant": tuple(PLANTS),
 }
 
 
@@ -38,8 +39,17 @@ def kind_of(name: str, told: Kind | None) -> Kind:
         found = [kind for kind in METHODS if any(hasattr(maker, each) for each in METHODS[kind])]
     if len(found) == 1:
         return found[0]
+    if not (found or is_module_class(name)):
+        raise ScenarioError(f"no estimator, law or plant {name!r}: take one of {_known()}")
     what = "several things" if found else "none of the three by its methods"
     raise ScenarioError(f"{name} is {what}: say which, with --as {'|'.join(KINDS)}")
+
+
+def _known() -> str:
+    """All names."""
+    names = [name for names in SHIPPED.values() for name in names]
+    plugins = [each.name for group in KINDS.values() for each in installed_plugins(group)]
+    return ", ".join((*names, *plugins, "or module:Class"))
 
 
 def _by_name(name: str) -> Iterator[Kind]:

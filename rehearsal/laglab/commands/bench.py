@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from laglab import bench
 from laglab.bench import codec as codec_bench
@@ -16,6 +15,7 @@ from laglab.extras import SEEING, STEPPING, require
 from laglab.progress import status
 from laglab.results.whole import whole_file
 from laglab.results.writable import file_place
+from laglab.tables import terminal
 from laglab_protocol import require_terminals
 
 RoundsOption = Annotated[int, typer.Option("--rounds", min=1, help="Turns of each contender.")]
@@ -108,7 +108,7 @@ def _run(what: bench.Bench, rounds: int, json: Path | None) -> None:
         file_place("--json", json)
     with status() as tell:
         report = bench.run(what, rounds, tell)
-    bench.show(report, Console())
+    bench.show(report, terminal())
     if json:
         with whole_file(json) as file:
             file.write(report.to_json().encode())

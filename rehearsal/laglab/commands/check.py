@@ -3,11 +3,11 @@
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from laglab.check import Kind, all_hold, checked, findings_table, kind_of
 from laglab.errors import ScenarioError
 from laglab.scenario import assignment
+from laglab.tables import terminal
 
 FAILED = 1
 """Exit code: a check does not hold, and nobody admits it."""
@@ -38,8 +38,8 @@ def check(
     except ScenarioError as error:
         raise ScenarioError(str(error).replace("--set", "--option")) from None
     found = list(checked(kind, name, options))
-    console = Console()
-    console.print(findings_table(found), highlight=False, markup=False)
+    console = terminal()
+    console.print(findings_table(found), highlight=False)
     held = all_hold(found)
     article = "an" if kind == "estimator" else "a"
     verdict = "keeps" if held else "does not keep"

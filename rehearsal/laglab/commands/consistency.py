@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from laglab.commands.figure import WidthOption
 from laglab.commands.options import on_scenario
@@ -18,6 +17,7 @@ from laglab.scenario import Scenario
 from laglab.scenario.tables.estimator import COMPARABLE, comparable
 from laglab.studies.consistency import nth, samples, verdict
 from laglab.studies.consistency_report import consistency_table, draw_consistency
+from laglab.tables import terminal
 
 JUDGED = ("ekf", "popf", "popf-exact", "delayed-ekf")
 MOST_SEEDS = 10_000
@@ -57,7 +57,7 @@ def consistency(
     got = list(tracked(runs, seeds, "consistency", "seed"))
     m = scenario.link.m
     verdicts = [verdict(name, [sample[name] for sample in got], m) for name in names]
-    console = Console()
+    console = terminal()
     console.print(consistency_table(scenario, verdicts, seeds))
     save(draw_consistency(scenario, verdicts, width), out)
     console.print(f"picture in {out}", highlight=False)

@@ -4,13 +4,13 @@ from functools import partial
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from laglab.commands.options import on_scenario
 from laglab.extras import STEPPING, require
 from laglab.progress import tracked
 from laglab.scenario import Scenario
 from laglab.studies.errata import VARIANTS, costs, costs_table
+from laglab.tables import terminal
 
 
 @partial(on_scenario, by_default="fig8")
@@ -25,4 +25,4 @@ def errata(
     require(STEPPING)
     scenario.must_end()
     rows = list(tracked(costs(scenario, seeds), len(VARIANTS), "errata", "version"))
-    Console().print(costs_table(scenario, rows), markup=False)
+    terminal().print(costs_table(scenario, rows))

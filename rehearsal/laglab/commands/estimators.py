@@ -2,10 +2,8 @@
 
 from collections.abc import Mapping
 
-from rich.console import Console
-
 from laglab.scenario.tables.plant import SHIPPED
-from laglab.tables import plain_table
+from laglab.tables import plain_table, terminal
 from laglab_control import ESTIMATORS, LAWS, installed_plugins
 from laglab_control.plugins import Group
 
@@ -33,4 +31,4 @@ def _list(group: Group, shipped: Mapping[str, str]) -> None:
         table.add_row(name, "laglab", description)
     for plugin in installed_plugins(group):
         table.add_row(*plugin)
-    Console().print(table, highlight=False, markup=False)
+    terminal().print(table, highlight=False)

@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from laglab.commands.figure import WidthOption
 from laglab.commands.group import group
@@ -28,6 +27,7 @@ from laglab.results.whole import whole_file
 from laglab.results.writable import file_place
 from laglab.runs.station_side import station_config
 from laglab.scenario import load
+from laglab.tables import terminal
 from laglab_control import PolarLaw, delay_margin
 from laglab_gateway import Impairments
 from laglab_protocol import (
@@ -67,7 +67,7 @@ ClocksOption = Annotated[
 
 
 def _say(text: str) -> None:
-    Console(stderr=True).print(text, highlight=False, soft_wrap=True, markup=False)
+    terminal(stderr=True).print(text, highlight=False, soft_wrap=True)
 
 
 @app.command("echo")
@@ -130,7 +130,7 @@ def probe(
             Listener(link, codec.receiver), codec, plan, lambda prober: told(prober.sent), _say
         )
     write_link_log(measured, out)
-    print_measured(measured, Console())
+    print_measured(measured, terminal())
     typer.echo(out)
 
 
@@ -187,7 +187,7 @@ def import_(
         sizes = real_sizes(Sender(ROBOT_SYSTEM, ROBOT_COMPONENT))
         measured = read_link(file, How(sizes, interval, clocks_within, back))
         write_link_log(measured, out)
-        print_measured(measured, Console())
+        print_measured(measured, terminal())
     typer.echo(out)
 
 
@@ -232,13 +232,13 @@ def fit(
     found = fit_link(read_measured(file, interval, (n, m)), late)
     with whole_file(out) as written:
         written.write(scenario_toml(on, found.link).encode())
-    console = Console()
+    console = terminal()
     console.print(fit_table(found))
     law = station_config(on).law
     margin = delay_margin(law, interval) if isinstance(law, PolarLaw) else None
     console.print(choices_table(found, margin))
     for line in suggestions(found):
-        console.print(line, highlight=False, markup=False)
+        console.print(line, highlight=False)
     typer.echo(out)
     if figure is not None:
         save(draw_fit(found, width), figure)

@@ -6,12 +6,12 @@ from contextlib import contextmanager
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from laglab.extras import SEEING, require
 from laglab.live import LivePage, live_page, place_of
 from laglab.results.complete import Way
 from laglab.scenario import Scenario
+from laglab.tables import terminal
 
 LiveOption = Annotated[
     str | None,
@@ -36,7 +36,7 @@ def shown_live(
     require(SEEING)
     origin = f"Side: {way.side}; over {way.transport}; plant {way.plant}; seed {scenario.seed}."
     with live_page(scenario, place_of(live or "0"), origin, way.side == "station") as page:
-        errors = Console(stderr=True)
+        errors = terminal(stderr=True)
         if warning := page.warning:
             errors.print(f"warning: {warning}", highlight=False, soft_wrap=True)
         errors.print(f"live at {page.address}", highlight=False, soft_wrap=True)

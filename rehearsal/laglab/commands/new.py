@@ -4,10 +4,10 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from laglab.check import Kind
 from laglab.new import make_package
+from laglab.tables import terminal
 
 
 def new(
@@ -22,7 +22,7 @@ def new(
     A module, an entry point by which laglab finds it, and a test that runs `laglab check`.
     """
     made = make_package(kind, name, out)
-    console = Console()
+    console = terminal()
     console.print(f"made {made.folder}; and now:", highlight=False, soft_wrap=True)
     for command in made.commands:
-        console.print(f"    {command}", highlight=False, markup=False, soft_wrap=True)
+        console.print(f"    {command}", highlight=False, soft_wrap=True)

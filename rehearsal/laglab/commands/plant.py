@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
 
 from laglab.commands.group import group
 from laglab.errors import ScenarioError
@@ -12,6 +11,7 @@ from laglab.extras import STEPPING, require
 from laglab.progress import status
 from laglab.runs.plant import check_plant
 from laglab.scenario import Overrides, Scenario, assignment, changed, load
+from laglab.tables import terminal
 
 app = group("A robot of your own.")
 
@@ -41,7 +41,7 @@ def check(
     from laglab_fmu.foreign import FmuFile
 
     overrides = dict(map(assignment, set_ or []))
-    console = Console()
+    console = terminal()
     fmu = FmuFile.read(Path(file)) if Path(file).suffix == ".fmu" else None
     proposal = proposed(fmu) if fmu else Proposal()
     if fmu:

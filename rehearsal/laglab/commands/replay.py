@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from laglab.commands.figure import WidthOption
 from laglab.errors import ScenarioError
@@ -17,6 +16,7 @@ from laglab.results.shadows import collected, file_name, kept_rows, shadow_rows
 from laglab.results.writable import folder_place
 from laglab.scenario import load
 from laglab.scenario.tables.estimator import COMPARABLE
+from laglab.tables import terminal
 from laglab_gateway import TRACE_FILE, read_trace
 from laglab_station import read_session
 
@@ -75,8 +75,8 @@ def replay(
     save(draw_replays(told, session, replays, trace, width), directory / "replay.png")
     if report:
         _report(replayed_run(tlog.parent, replays), directory)
-    Console().print(replays_table(replays, trace))
-    Console().print(f"results in {out}", highlight=False, soft_wrap=True)
+    terminal().print(replays_table(replays, trace))
+    terminal().print(f"results in {out}", highlight=False, soft_wrap=True)
 
 
 def _report(run: Run, directory: Path) -> None:

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 from rich.table import Table
 
 from laglab.errors import ScenarioError
@@ -13,7 +12,7 @@ from laglab.extras import REHEARSING, require
 from laglab.progress import tracked
 from laglab.results.writable import folder_place
 from laglab.studies.reproduce import CLAIMS, Entry, entries, trying, write_report
-from laglab.tables import plain_table
+from laglab.tables import plain_table, terminal
 
 
 def reproduce(
@@ -35,7 +34,7 @@ def reproduce(
     findings = list(
         tracked(trying(names, workers or os.cpu_count() or 1), len(names), "reproduce", "claim")
     )
-    console = Console()
+    console = terminal()
     console.print(_table(entries(findings)))
     page, markdown = write_report(findings, out)
     console.print(f"report in {page} and {markdown}", highlight=False)

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from laglab.commands.figure import WidthOption
 from laglab.commands.options import on_scenario
@@ -18,6 +17,7 @@ from laglab.results.figures import picture_place, save
 from laglab.scenario import Scenario
 from laglab.studies.rivals import LINKS, OWN_LINK, STRATEGIES, links_of, outcomes, trials
 from laglab.studies.rivals_report import draw_rivals, rivals_table, scores
+from laglab.tables import terminal
 
 
 @partial(on_scenario, by_default="lab")
@@ -62,7 +62,7 @@ def rivals(
     got = scores(list(tracked(runs, len(jobs), "rivals", "run")))
     n, m = scenario.link.command_delay, scenario.link.measurement_delay
     title = f"{scenario.name}, n = {n}, m = {m}, {seeds} runs each"
-    console = Console()
+    console = terminal()
     console.print(rivals_table(title, got, links, strategies))
     save(draw_rivals(title, got, links, strategies, width), out)
     console.print(f"picture in {out}", highlight=False)

@@ -1,9 +1,7 @@
 """``laglab scenarios``."""
 
-from rich.console import Console
-
 from laglab.scenario import shipped
-from laglab.tables import plain_table
+from laglab.tables import plain_table, terminal
 
 
 def scenarios() -> None:
@@ -18,4 +16,4 @@ def scenarios() -> None:
             "on" if scenario.noise else "off",
             scenario.description,
         )
-    Console().print(table)
+    terminal().print(table)

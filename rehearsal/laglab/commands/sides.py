@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from laglab.commands.live import LiveOption, OpenOption, shown_live
 from laglab.commands.options import on_scenario
@@ -32,6 +31,7 @@ from laglab.runs.glance import Told, watched
 from laglab.runs.robot_side import Setup, open_robot, wrapped_replay
 from laglab.runs.station_side import open_station
 from laglab.scenario import Scenario
+from laglab.tables import terminal
 from laglab_gateway import FileRecorder, Patience, Surroundings
 from laglab_protocol import Endpoint, Listener, open_endpoint, refuse_open_door
 
@@ -48,7 +48,7 @@ UnsignedOption = Annotated[
 
 
 def _say(text: str) -> None:
-    Console(stderr=True).print(text, highlight=False, soft_wrap=True)
+    terminal(stderr=True).print(text, highlight=False, soft_wrap=True)
 
 
 def _warn(text: str) -> None:

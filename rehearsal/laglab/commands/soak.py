@@ -4,12 +4,12 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from laglab.extras import REHEARSING, require
 from laglab.progress import passing
 from laglab.results.writable import folder_place
 from laglab.soak import Soak, repeated, require_processes, summary_tables, verdict
+from laglab.tables import terminal
 from laglab_protocol import require_terminals
 
 FAILED = 1
@@ -37,11 +37,11 @@ def soak(
     require(REHEARSING)
     require_terminals("soak")
     require_processes()
-    console = Console()
+    console = terminal()
 
     def tell(lines: list[str]) -> None:
         for line in lines:
-            console.print(line, highlight=False, soft_wrap=True, markup=False)
+            console.print(line, highlight=False, soft_wrap=True)
 
     command = f"laglab soak --minutes {minutes:g} --seed {seed}"
     place = _place(out if turn is None else out / f"again-{turn}")  # the soak's report stays

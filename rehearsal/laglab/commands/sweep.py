@@ -5,13 +5,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
 from rich.table import Table
 
 from laglab.extras import SEEING, STUDYING, require
 from laglab.progress import progress_of_study
 from laglab.results.place import REPORT_FILE
 from laglab.scenario import assignment
+from laglab.tables import terminal
 
 if TYPE_CHECKING:
     from laglab.studies.workers import Executor
@@ -78,12 +78,12 @@ def sweep(
     ):
         compute(chosen, folder, executor, done, force)
     said = summary(chosen, folder, plan)
-    Console().print(said, markup=False, highlight=False)
+    terminal().print(said, highlight=False)
     if report:
         from laglab.studies.maps.page import save_study_page
 
         save_study_page(chosen, folder.path, said.splitlines(), folder.path / REPORT_FILE)
-        Console().print(f"report in {folder.path / REPORT_FILE}", highlight=False, soft_wrap=True)
+        terminal().print(f"report in {folder.path / REPORT_FILE}", highlight=False, soft_wrap=True)
 
 
 def _workers(scheduler: str | None, workers: int) -> "AbstractContextManager[Executor]":
@@ -99,4 +99,4 @@ def _list() -> None:
     table = Table("name", "runs", "over", "what it shows", box=None)
     for name, study in shipped_studies().items():
         table.add_row(name, str(study.runs), ", ".join(study.grid), study.description)
-    Console().print(table)
+    terminal().print(table)

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, require
@@ -14,6 +13,7 @@ from laglab.results.figures import picture_place, save
 from laglab.scenario.tables.names import known_estimator
 from laglab.studies.trust import CONDITIONS, DEFAULT, fared, stations
 from laglab.studies.trust_report import draw_trust, scores, trust_table
+from laglab.tables import terminal
 from laglab_control import ESTIMATORS
 
 
@@ -51,7 +51,7 @@ def trust(
     total = len(conditions) * len(compared) * seeds
     runs = fared(conditions, compared, seeds, workers or os.cpu_count() or 1)
     got = scores(list(tracked(runs, total, "trust", "run")))
-    console = Console()
+    console = terminal()
     console.print(trust_table(got, list(compared), seeds))
     save(draw_trust(got, list(compared)), out)
     console.print(f"picture in {out}", highlight=False)

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import NoReturn
 
 import typer
-from rich.console import Console
 
 from laglab.errors import RefusedError, ResultsError, RunError
 from laglab.live import LivePage
@@ -16,6 +15,7 @@ from laglab.results.run import Run
 from laglab.results.table import results_table, warnings
 from laglab.runs.ending import Ending
 from laglab.scenario import Scenario
+from laglab.tables import terminal
 
 
 def conclude(
@@ -54,16 +54,16 @@ def _tell(page: LivePage | None, verdict: str) -> None:
 
 def report_on(run: Run) -> None:
     """Leave a report beside the run's other files. Needs bokeh."""
-    from laglab.results.report import save_report
 
     if run.directory:
-        save_report([run], run.directory / REPORT_FILE)
-        Console().print(f"report in {run.directory / REPORT_FILE}", highlight=False, soft_wrap=True)
+        terminal().print(
+            f"report in {run.directory / REPORT_FILE}", highlight=False, soft_wrap=True
+        )
 
 
 def _show(run: Run) -> None:
     """Table, warnings, verdict and place."""
-    console, errors = Console(), Console(stderr=True)
+    console, errors = terminal(), terminal(stderr=True)
     console.print(results_table(run.summary))
     for warning in warnings(run.summary):
         errors.print(f"warning: {warning}", highlight=False, soft_wrap=True)

@@ -9,7 +9,7 @@ from pathlib import Path
 from string import Template
 from typing import NamedTuple
 
-from laglab.check import KINDS, Kind
+from laglab.check import KINDS, SHIPPED, Kind
 from laglab.errors import PlaceError, ScenarioError
 
 TEMPLATES = resources.files("laglab.new") / "templates"
@@ -31,7 +31,8 @@ class Made(NamedTuple):
 def make_package(kind: Kind, name: str, parent: Path) -> Made:
     """In a new folder `parent/name`, with a module, an entry point and a test.
 
-    Raises ScenarioError for a name that cannot be a package's, PlaceError where it cannot go.
+    Raises ScenarioError for a name that cannot be a package's, or is taken; PlaceError where it
+    cannot go.
     """
     module = _module(name)
     told = {
@@ -65,6 +66,8 @@ def _module(name: str) -> str:
         raise ScenarioError(
             f"{name}: a package's name is of small letters and digits, with - or _ between them"
         )
+    if any(name in names for names in SHIPPED.values()):
+        raise ScenarioError(f"{name}: laglab has something of that name already: take another one")
     module = name.replace("-", "_")
     if keyword.iskeyword(module) or find_spec(module) is not None:
         raise ScenarioError(f"{name}: Python has something of that name already: take another one")

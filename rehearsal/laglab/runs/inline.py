@@ -2,7 +2,8 @@
 
 from time import sleep
 
-from laglab_protocol import Address, Receiver
+from laglab_control import PluginFailedError
+from laglab_protocol import Address, EndReason, Receiver
 from laglab_station import Station
 
 
@@ -18,15 +19,25 @@ class InlineLink:
         self._station = station
         self._receiver = receiver
         self._inbox = [b"".join(station.heartbeat())]
+        self.problem = ""
+        """What somebody brought failed in, which ended the run."""
 
     def fileno(self) -> int:
         """There is nothing to wait for."""
         return -1
 
     def send(self, data: bytes, to: Address | None = None) -> None:
-        """Hand the bytes to the station; its answer waits to be received."""
+        """Hand the bytes to the station; its answer waits to be received. A station that fails says
+        so as it would from a process of its own, and no more."""
         del to  # there is only one far end
-        if answer := self._station.hear(self._receiver.receive(data, whole=True)):
+        if self.problem:
+            return
+        try:
+            answer = self._station.hear(self._receiver.receive(data, whole=True))
+        except PluginFailedError as error:
+            self.problem = str(error)
+            answer = self._station.end(EndReason.FAILED)
+        if answer:
             self._inbox.append(b"".join(answer))
 
     def offer(self, data: bytes, to: Address | None = None) -> None:

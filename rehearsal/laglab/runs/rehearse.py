@@ -77,6 +77,7 @@ def rehearse_inline(
     report = station.report()
     return Ending(
         outcome=served.outcome,
+        problem=link.problem,
         loop_seconds=clock.seconds,
         link=served.link,
         timing=served.timing,

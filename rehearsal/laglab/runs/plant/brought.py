@@ -14,6 +14,7 @@ from laglab_control.plugins import (
     find_plugin,
     made,
     refuse_misfit,
+    shown,
 )
 from laglab_gateway import Reading
 
@@ -44,12 +45,12 @@ class BroughtPlant:
 
     def _read(self) -> Reading:
         with at_tick(self._tick):
-            answer = called(self._name, self._one.read)
+            answer = called(self._name, self._one, "read")
             try:
                 reading = Reading(*map(float, answer))
             except (TypeError, ValueError):
                 wanted = ", ".join(Reading._fields)
-                raise self._wrong(f"must answer {wanted}, not {answer!r:.60}") from None
+                raise self._wrong(f"must answer {wanted}, not {shown(answer)}") from None
             for name, number in reading._asdict().items():
                 if not math.isfinite(number):
                     raise self._wrong(f"{name} must be finite, not {number}")
@@ -65,7 +66,7 @@ class BroughtPlant:
     def step(self, v: float, omega: float) -> None:
         """One tick of it."""
         with at_tick(self._tick):
-            called(self._name, self._one.step, v, omega)
+            called(self._name, self._one, "step", v, omega)
         self._tick += 1
         self._reading = self._read()
 
@@ -74,5 +75,5 @@ class BroughtPlant:
         asked = zip((x, y, theta), self._start, strict=True)
         pose = [there if math.isnan(each) else each for each, there in asked]
         with at_tick(self._tick):
-            called(self._name, self._one.place, *pose)
+            called(self._name, self._one, "place", *pose)
         self._reading = self._read()
