@@ -15,7 +15,14 @@ from laglab_gateway.errors import (
 from laglab_gateway.link.channel import Channel
 from laglab_gateway.link.fates import Fates, RandomFates
 from laglab_gateway.link.impairments import IDEAL, Burst, ExtraDelay, Impairments
-from laglab_gateway.link.log import LinkRow, RecordedFates, read_link_log, recorded_ticks
+from laglab_gateway.link.log import (
+    LONGEST_EXTRA,
+    MOST_TICKS,
+    LinkRow,
+    RecordedFates,
+    read_link_log,
+    recorded_ticks,
+)
 from laglab_gateway.link.timeline import Direction, Event, first_tick
 from laglab_gateway.loops.lockstep import serve_lockstep
 from laglab_gateway.loops.realtime import serve_realtime
@@ -64,6 +71,8 @@ __all__ = [
     "FOLLOWED",
     "IDEAL",
     "LINK_FILE",
+    "LONGEST_EXTRA",
+    "MOST_TICKS",
     "ROWS",
     "TIMING_FILE",
     "TLOG_FILE",

@@ -203,6 +203,27 @@ def test_what_is_no_link_log_is_refused_by_name(tmp_path: Path, text: str) -> No
         read_link_log(path, "command")
 
 
+UNBELIEVABLE = {
+    "0,0,0,35,delivered,nan": "extra must be from 0",
+    "0,0,0,35,delivered,inf": "extra must be from 0",
+    "0,0,0,35,delivered,-0.01": "extra must be from 0",
+    "0,0,0,35,delivered,1e300": "extra must be from 0",
+    "-1,0,0,35,delivered,0": "a tick must be 0 or more",
+    "10000000000000,0,0,35,delivered,0": "below 10000000",
+    "0,0,0,-35,delivered,0": "size must be 0 or more",
+    "0,1,0,35,delivered,0": "frames of a tick are counted from 0",
+    "0,0,1,35,delivered,0": "copies of a frame are counted from 0",
+}
+
+
+@pytest.mark.parametrize("row", UNBELIEVABLE)
+def test_what_no_run_records_is_refused(tmp_path: Path, row: str) -> None:
+    path = tmp_path / "link.csv"
+    path.write_text(",".join(LinkRow._fields) + f"\ncommand,{row}\n")
+    with pytest.raises(TimelineError, match=UNBELIEVABLE[row]):
+        read_link_log(path, "command")
+
+
 def test_a_replay_begins_again_at_its_end_in_both_directions_at_once() -> None:
     rows = [LinkRow("command", tick, 0, 0, 35, *told) for tick, told in enumerate(TOLD)]
     fates = RecordedFates(rows, range(5))

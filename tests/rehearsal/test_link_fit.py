@@ -209,6 +209,34 @@ def test_fitted_rehearsed_and_replayed(said: Said, tmp_path: Path) -> None:
     np.testing.assert_array_equal(again.command.delay, MEASURED.command.delay[:101].round(7))
 
 
+@pytest.mark.parametrize(
+    ("delay", "options", "said"),
+    [
+        (900.0, (), "link.command_delay: must be below 65535, not 90000"),
+        (0.01, ("--figure", "x.nope"), "--figure x.nope: its name must end in one of"),
+        (0.01, ("--figure", "no/x.png"), "--figure no/x.png: cannot write there"),
+        (None, (), "no frames in it"),
+    ],
+)
+def test_what_cannot_be_fitted_or_drawn_is_one_line(
+    delay: float | None,
+    options: tuple[str, ...],
+    said: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    flow = Flow(TS * np.arange(9.0), np.full(9, delay), 100) if delay else NONE
+    write_link_log(MeasuredLink(flow, flow, TS), tmp_path / "link.csv")
+    with pytest.raises(SystemExit) as ended:
+        main(["link", "fit", *options])
+    assert ended.value.code == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert said in line
+    assert not (tmp_path / "link.toml").exists()
+
+
 def test_tables_stay_within_80_columns(said: Said, tmp_path: Path) -> None:
     write_link_log(measured(600), tmp_path / "link.csv")
     lines = said("link", "fit").splitlines()

@@ -13,7 +13,7 @@ import pytest
 
 from laglab.command import main
 from laglab.link.errors import LinkFileError
-from laglab.link.importing import How, read_link, read_table
+from laglab.link.importing import How, read_link, read_table, recognise
 from laglab.link.importing.mahimahi import waited
 from laglab.link.measured import MeasuredLink, read_measured
 from laglab.link.probing import Sizes
@@ -83,6 +83,34 @@ def test_ping_is_halved(tmp_path: Path, printed: str, interval: float) -> None:
 def test_a_long_ping_s_numbers_go_on_where_they_wrap(tmp_path: Path) -> None:
     lines = (f"64 bytes from x: icmp_seq={k % 65536} ttl=5 time=1 ms" for k in range(1, 70_000, 2))
     assert len(imported(tmp_path, "\n".join(lines)).command.delay) == 69_999
+
+
+def pings(*numbers: int) -> str:
+    return "".join(f"64 bytes from x: icmp_seq={k % 65536} ttl=5 time=1 ms\n" for k in numbers)
+
+
+@pytest.mark.parametrize(
+    ("printed", "lost"),
+    [
+        (pings(40_000, 40_001, 40_003), [2]),
+        (pings(65_534, 65_535, 65_537, 65_538), [2]),
+        ("PING x\n" + pings(65_535, 65_536), []),
+        (pings(40_000, 40_001) + "40001 packets transmitted, 2 received, time 40000ms\n", []),
+        ("PING x\n" + pings(3, 4) + "5 packets transmitted, 2 received, time 4000ms\n", [0, 1, 4]),
+        ("PING x\nRequest timeout for icmp_seq 0\n" + pings(1, 2), [0]),
+        (pings(1) + "no answer yet for icmp_seq=2\n", [1]),
+    ],
+)
+def test_a_ping_may_begin_at_any_number(tmp_path: Path, printed: str, lost: list[int]) -> None:
+    command = imported(tmp_path, printed).command
+    assert np.flatnonzero(command.lost).tolist() == lost
+    assert len(command.delivered) == printed.count("time=1 ms")
+
+
+def test_a_long_line_costs_no_more_than_it_is_long(tmp_path: Path) -> None:
+    # By an expression that goes back at each of them this would take a quarter of an hour.
+    lines = "seq=1 " * 100_000 + "\n" + "time=3 seq=1 " * 100_000 + "\n"
+    assert len(imported(tmp_path, lines + pings(1, 2)).command.delay) == 2
 
 
 def test_resampling_gives_a_frame_a_tick(tmp_path: Path) -> None:
@@ -256,6 +284,13 @@ def test_what_was_imported_is_read_again(laglab: Laglab, tmp_path: Path) -> None
     assert laglab("link", "import", "link.csv").returncode == 2
 
 
+def irtt_of(rtt: int, apart: int = 10_000_000) -> bytes:
+    trips = [trip(k, "false", 0, (0, rtt)) for k in range(3)]
+    for number, each in enumerate(trips):
+        each["timestamps"]["client"]["send"]["monotonic"] = number * apart
+    return json.dumps({"round_trips": trips}).encode()
+
+
 BAD = {
     "nothing": (None, "nothing cannot be read"),
     "empty": (b"", "none of what is known here"),
@@ -269,6 +304,18 @@ BAD = {
     "empty.pcap": (bytes.fromhex("d4c3b2a102000400") + b"\0" * 8 + b"\0\0\4\0\1\0\0\0", "no run"),
     "other.tlog": (b"\0" * 8 + b"\xfd" + b"\0" * 99, "no frame of the dialect"),
     "two.dist": (NETEM.encode(), "say --mean and --spread"),
+    "wide.dist": (b"-1\n" + b"9" * 30, "none of what is known here"),
+    "huge.trace": (b"1\n" + b"9" * 400, "give a shorter trace"),
+    "deep.json": (b'{"a": ' + b"[" * 50_000, "not as irtt writes it"),
+    "huge.json": (irtt_of(rtt=10**400), "not as irtt writes it"),
+    "late.json": (irtt_of(rtt=10**30), "not from 0 to 10000 s"),
+    "no-time.json": (irtt_of(rtt=1, apart=0), "no times that go on"),
+    "many.txt": (f"{pings(1)}99999999999 packets transmitted\n".encode(), "10000000 at most"),
+    "late.txt": (b"64 bytes: icmp_seq=1 time=999999999 ms\n", "not from 0 to 10000 s"),
+    "lost.txt": (b"PING x\n\n10 packets transmitted, 0 received\n", "no answer at all"),
+    "timeouts.txt": (b"Request timeout for icmp_seq 0\n" * 3, "no answer at all"),
+    "windows.txt": (b"Request timed out.\n" * 3, "no answer at all"),
+    "broken.gz": (gzip.compress(b"{}" * 99)[:15] + b"\xff" * 30, "cannot be read"),
 }
 
 
@@ -286,3 +333,16 @@ def test_what_tells_nothing_is_one_line(
     assert said in error
     assert len(error.splitlines()) == 1
     assert not (tmp_path / "link.csv").exists()
+
+
+def test_what_unpacks_to_too_much_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(recognise, "MOST_BYTES", 2**20)
+    with pytest.raises(LinkFileError, match="more than 1 MB"):
+        imported(tmp_path, gzip.compress(b" " * (2**20 + 1)))
+
+
+def test_ticks_without_number_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(LinkFileError, match="give a longer --interval"):
+        imported(tmp_path, irtt_of(rtt=1, apart=10**13), HOW._replace(interval=0.001))

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from laglab.errors import ScenarioError
 from laglab.runs.plant.shipped import robot_parameters
 from laglab.runs.robot_side import gateway_config, link_fates, shown_parameters
 from laglab.runs.station_side import station_config
@@ -171,7 +172,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("scenarios")
     for log in (folder / "link.csv", folder / "earlier run" / "link.csv"):
         log.parent.mkdir(exist_ok=True)
-        log.write_text(LINK_HEADER)
+        log.write_text(LINK_HEADER + "command,0,0,0,35,delivered,0.01\n")
     for way in (folder / "way.csv", folder / "earlier run" / "way.csv"):
         way.write_text("time,x,y,theta,v,omega\n0,0,0,0,0,0\n")
     return folder
@@ -232,6 +233,22 @@ def test_what_a_scenario_allows_both_sides_take(folder: Path, fields: dict[str, 
     link_fates(scenario)
     shown_parameters(scenario)
     assert robot_parameters(scenario).by_name()["integration"] in (1, 2)
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        ("", "tells of no frame"),
+        ("measurement,0,0,0,35,delivered,nan\n", "measurement 0 of tick 0: extra must be"),
+    ],
+)
+def test_a_log_of_which_nothing_can_be_replayed_is_refused(
+    tmp_path: Path, rows: str, said: str
+) -> None:
+    log = tmp_path / "link.csv"
+    log.write_text(LINK_HEADER + rows)
+    with pytest.raises(ScenarioError, match=f"link.replay: .*{said}"):
+        load("lab", {"link.replay": str(log)})
 
 
 def test_a_path_is_relative_to_the_file_it_stands_in(

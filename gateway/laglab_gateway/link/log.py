@@ -72,8 +72,15 @@ def _done(fate: str) -> FateKind:
     return FateKind.DELIVERED if kind is FateKind.LATE else kind
 
 
+MOST_TICKS = 10_000_000
+"""Of a log: a day at a hundred a second."""
+LONGEST_EXTRA = 1e4
+"""[s] No frame is that late."""
+
+
 def read_link_log(path: Path, direction: Direction) -> list[LinkRow]:
-    """The rows of one direction. Raises TimelineError when the file is no link log."""
+    """The rows of one direction. Raises TimelineError when the file is no link log, or tells what
+    no run does."""
     try:
         with path.open(newline="") as file:
             header, *rows = csv.reader(file)
@@ -82,7 +89,10 @@ def read_link_log(path: Path, direction: Direction) -> list[LinkRow]:
         raise TimelineError(f"{path} is not a readable link log: {error}") from error
     if header != list(LinkRow._fields):
         raise TimelineError(f"{path} is not a link log: expected the columns {LINK_HEADER.strip()}")
-    return [row for row in read if row.direction == direction]
+    own = [row for row in read if row.direction == direction]
+    if (problem := _unbelievable(own)) is not None:
+        raise TimelineError(f"{path} is not a link log that can be believed: {problem}")
+    return own
 
 
 def _row(
@@ -91,3 +101,31 @@ def _row(
     return LinkRow(
         direction, int(tick), int(frame), int(copy), int(size), FateKind(fate), float(extra)
     )
+
+
+def _unbelievable(rows: Sequence[LinkRow]) -> str | None:
+    """What is wrong with the first row that cannot be; None where all can."""
+    for row in rows:
+        if not 0 <= row.extra <= LONGEST_EXTRA:  # nor NaN
+            return f"{_place(row)}: extra must be from 0 to {LONGEST_EXTRA:g} s, not {row.extra:g}"
+        if not 0 <= row.tick < MOST_TICKS:
+            return f"{_place(row)}: a tick must be 0 or more and below {MOST_TICKS}"
+        if min(row.frame, row.copy, row.size) < 0:
+            return f"{_place(row)}: frame, copy and size must be 0 or more"
+    return _uncounted(rows)
+
+
+def _uncounted(rows: Sequence[LinkRow]) -> str | None:
+    """Frames are counted from 0 in each tick, copies from 0 of each frame."""
+    frames = {row.tick for row in rows if row.frame == 0}
+    copies = {(row.tick, row.frame) for row in rows if row.copy == 0}
+    for row in rows:
+        if row.tick not in frames:
+            return f"{_place(row)}: the frames of a tick are counted from 0"
+        if (row.tick, row.frame) not in copies:
+            return f"{_place(row)}: the copies of a frame are counted from 0"
+    return None
+
+
+def _place(row: LinkRow) -> str:
+    return f"{row.direction} {row.frame} of tick {row.tick}"

@@ -35,6 +35,7 @@ from laglab_protocol import (
     ROBOT_SYSTEM,
     STATION_COMPONENT,
     STATION_SYSTEM,
+    UNKNOWN_DELAY,
     Codec,
     Listener,
     Sender,
@@ -205,9 +206,18 @@ def fit(
     ] = "lab",
     interval: IntervalOption = 0.01,
     n: Annotated[
-        int, typer.Option("-n", min=0, help="The fixed delay that a run's link.csv leaves out.")
+        int,
+        typer.Option(
+            "-n",
+            min=0,
+            max=UNKNOWN_DELAY - 1,
+            help="The fixed delay that a run's link.csv leaves out.",
+        ),
     ] = 0,
-    m: Annotated[int, typer.Option("-m", min=0, help="The same of measurements.")] = 0,
+    m: Annotated[
+        int,
+        typer.Option("-m", min=0, max=UNKNOWN_DELAY - 1, help="The same of measurements."),
+    ] = 0,
     late: Annotated[
         float,
         typer.Option(
@@ -226,12 +236,13 @@ def fit(
     """
     if figure is not None:
         require(DRAWING)
-        picture_place(figure)
+        picture_place(figure, "--figure")
     file_place("--out", out)
     on = load(scenario)
     found = fit_link(read_measured(file, interval, (n, m)), late)
+    fitted = scenario_toml(on, found.link)
     with whole_file(out) as written:
-        written.write(scenario_toml(on, found.link).encode())
+        written.write(fitted.encode())
     console = terminal()
     console.print(fit_table(found))
     law = station_config(on).law

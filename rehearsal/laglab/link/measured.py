@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from laglab.link.errors import LinkFileError
 from laglab.results.whole import whole_file
-from laglab_gateway import LinkRow, TimelineError, read_link_log
+from laglab_gateway import LONGEST_EXTRA, MOST_TICKS, LinkRow, TimelineError, read_link_log
 
 if TYPE_CHECKING:
     from laglab_gateway import Direction
@@ -70,6 +70,21 @@ def bursts(lost: Flags) -> list[int]:
     """How many frames were lost, each time that some were lost one after the other."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], lost, [False]])))
     return [int(length) for length in edges[1::2] - edges[::2]]
+
+
+def problem_of(measured: MeasuredLink) -> str | None:
+    """Why no link.csv that can be read again holds it; None where one does."""
+    if not measured.interval > 0:
+        return "its measurements have no times that go on from one to the next"
+    for direction, flow in measured.flows:
+        if len(flow.delay) > MOST_TICKS:
+            return f"{len(flow.delay)} {direction}s, {MOST_TICKS} at most"
+        wrong = flow.delivered[~((flow.delivered >= 0) & (flow.delivered <= LONGEST_EXTRA))]
+        if len(wrong):
+            return f"a {direction} that took {wrong[0]:g} s: not from 0 to {LONGEST_EXTRA:g} s"
+        if not np.isfinite(flow.sent).all():
+            return f"a {direction} of which it is not told when it was sent"
+    return None
 
 
 def rows_of(measured: MeasuredLink) -> Iterator[LinkRow]:

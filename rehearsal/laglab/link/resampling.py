@@ -39,6 +39,12 @@ def resampled(measured: MeasuredLink, interval: float) -> MeasuredLink:
     )
 
 
+def ticks_in(measured: MeasuredLink, interval: float) -> float:
+    """How many it is resampled to, of the longer direction."""
+    spans = [np.ptp(flow.sent) for _, flow in measured.flows if len(flow.sent)]
+    return float(max(spans, default=0.0) + measured.interval) / interval
+
+
 def _at_ticks(flow: Flow, before: float, interval: float) -> Flow:
     if not len(flow.sent):
         return flow

@@ -31,7 +31,14 @@ def read_irtt(text: bytes, how: How, name: str) -> MeasuredLink:
             np.array([_number(each, "delay", key) for each in trips]) * 1e-9
             for key in ("send", "receive", "rtt")
         )
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
+    except (
+        ValueError,
+        KeyError,
+        TypeError,
+        AttributeError,
+        OverflowError,
+        RecursionError,
+    ) as error:
         raise LinkFileError(f"{name}: JSON, but not as irtt writes it: {error}") from error
     if not len(trips):
         raise LinkFileError(f"{name}: irtt sent nothing")

@@ -10,6 +10,7 @@ import numpy as np
 from laglab.link.errors import LinkFileError
 from laglab.link.importing.how import TICK, How
 from laglab.link.measured import Array, Flow, MeasuredLink
+from laglab_gateway import MOST_TICKS
 
 OPPORTUNITY = 1500
 """[byte]"""
@@ -29,16 +30,26 @@ def is_trace(numbers: Sequence[int]) -> bool:
     return bool(numbers) and rising and numbers[0] >= 0 and numbers[-1] > 0
 
 
-def read_mahimahi(numbers: Sequence[int], how: How) -> MeasuredLink:
-    """Both ways by this trace, or measurements by the one of `how.back`."""
+def read_mahimahi(numbers: Sequence[int], how: How, name: str) -> MeasuredLink:
+    """Both ways by this trace, or measurements by the one of `how.back`. Raises LinkFileError."""
     interval = how.interval or TICK
+    _short_enough(numbers, interval, name)
     other = numbers if how.back is None else _numbers_in(how.back)
+    _short_enough(other, interval, f"--back {how.back}")
     return MeasuredLink(
         _flow(numbers, how.sizes.command, interval),
         _flow(other, how.sizes.measurement, interval),
         interval,
         (NOTE,),
     )
+
+
+def _short_enough(numbers: Sequence[int], interval: float, name: str) -> None:
+    if numbers[-1] > MOST_TICKS * interval * 1e3:
+        raise LinkFileError(
+            f"{name}: ends at {float(min(numbers[-1], 10**300)):.3g} ms: more than {MOST_TICKS} "
+            f"ticks of {interval:g} s: give a shorter trace or a longer --interval"
+        )
 
 
 def _numbers_in(path: Path) -> list[int]:

@@ -1,42 +1,62 @@
 """What `ping` prints, on Linux, BSD, macOS, BusyBox and Windows."""
 
 import re
+from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
+from laglab.link.errors import LinkFileError
 from laglab.link.importing.how import NOT_KNOWN_WHICH, How, halves
 from laglab.link.measured import Array, Flow, MeasuredLink
 from laglab.link.resampling import known_everywhere
+from laglab_gateway import MOST_TICKS
 
-ANSWER = re.compile(
-    r"^(?:\[(?P<at>\d+\.\d+)\] )?.*\b(?:icmp_)?seq[= ](?P<number>\d+)\b.*"
-    r"\btime[=<](?P<ms>\d+(?:\.\d+)?) ?ms",
-    re.MULTILINE,
-)
-WINDOWS = re.compile(r"^Reply from .*time[=<](?P<ms>\d+)ms|^Request timed out", re.MULTILINE)
-SENT = re.compile(r"^(\d+) packets transmitted", re.MULTILINE)
-TOOK = re.compile(r"\btime (\d+) ?ms", re.MULTILINE)
+LONGEST_LINE = 400
+"""[character] No ping prints a longer one; to look through one takes its length squared."""
+NUMBER = re.compile(r"\b(?:icmp_)?seq[= ](\d{1,10})\b")
+AT = re.compile(r"^\[(\d{1,12}\.\d+)\] ")
+TIME = re.compile(r"\btime[=<](\d{1,9}(?:\.\d+)?) ?ms")
+WINDOWS = re.compile(r"^Reply from .*time[=<](?P<ms>\d{1,9})ms|^Request timed out")
+HEADING = "PING "
+SENT = re.compile(r"^(\d{1,15}) packets transmitted")
+TOOK = re.compile(r"\btime (\d{1,15}) ?ms")
 USUAL = 1.0
 """[s] From ping to ping, where nothing says otherwise."""
 WRAP = 65536
 """Of the numbers that travel."""
 
 
+class _Numbered(NamedTuple):
+    """A line about one ping: its number, which goes on where it wraps."""
+
+    number: int
+    took: float
+    """[s] NaN: it says that no answer came."""
+    at: float | None
+    """[s] When it was printed."""
+
+
 def is_ping(text: str) -> bool:
-    """Whether there are any answers in it."""
-    return bool(
-        ANSWER.search(text) or re.search(r"^Reply from .*time[=<]\d+ms", text, re.MULTILINE)
+    """Whether there is any answer in it, or a word of none."""
+    return any(
+        SENT.match(line) or WINDOWS.match(line) or NUMBER.search(line) for line in _lines(text)
     )
 
 
-def read_ping(text: str, how: How) -> MeasuredLink:
-    """Halves of round trips."""
-    numbered = _answers(text)
-    took = _numbered(numbered, text) if numbered else _in_order(text)
+def read_ping(text: str, how: How, name: str) -> MeasuredLink:
+    """Halves of round trips. Raises LinkFileError: nothing came back, or too much did."""
+    lines = _lines(text)
+    told = list(_told(lines))
+    took = _by_number(told, lines, name) if told else _in_order(lines)
     lost = np.isnan(took)
-    interval, told = _interval(text, len(took))
+    if lost.all():
+        raise LinkFileError(
+            f"{name}: ping had no answer at all: nothing is known of the link but that it was down"
+        )
+    interval, known = _interval(told, lines, len(took))
     sent = interval * np.arange(len(took), dtype=np.float64)
-    note = halves("ping") + ("" if told else " It is taken to have pinged once a second.")
+    note = halves("ping") + ("" if known else " It is taken to have pinged once a second.")
     return MeasuredLink(
         Flow(sent, took / 2, how.sizes.command),
         Flow(sent, known_everywhere(took, np.zeros_like(lost)) / 2, how.sizes.measurement),
@@ -45,37 +65,60 @@ def read_ping(text: str, how: How) -> MeasuredLink:
     )
 
 
-def _answers(text: str) -> dict[int, float]:
-    """By number, which goes on where it wraps: the round trip [s]."""
-    answers: dict[int, float] = {}
-    last = 0
-    for found in ANSWER.finditer(text):
-        number = int(found["number"])
-        number += round((last - number) / WRAP) * WRAP
+def _lines(text: str) -> list[str]:
+    return [line for line in text.splitlines() if len(line) <= LONGEST_LINE]
+
+
+def _told(lines: list[str]) -> Iterator[_Numbered]:
+    last = None
+    for line in lines:
+        if (found := NUMBER.search(line)) is None:
+            continue
+        number = int(found[1])
+        if last is not None:
+            number += round((last - number) / WRAP) * WRAP
         last = number
-        answers.setdefault(number, 1e-3 * float(found["ms"]))
-    return answers
+        time, at = TIME.search(line, found.end()), AT.match(line)
+        took = 1e-3 * float(time[1]) if time else np.nan
+        yield _Numbered(number, took, float(at[1]) if at else None)
 
 
-def _numbered(answers: dict[int, float], text: str) -> Array:
-    first = 0 if 0 in answers else 1
-    sent = SENT.search(text)
-    count = max(answers) - first + 1
-    count = max(count, int(sent[1])) if sent else count
-    return np.array([answers.get(first + i, np.nan) for i in range(count)])
+def _by_number(told: list[_Numbered], lines: list[str], name: str) -> Array:
+    """From the first to the last that was sent, as far as this part of the output tells."""
+    first, last = _range(told, lines)
+    if (count := last - first + 1) > MOST_TICKS:
+        raise LinkFileError(f"{name}: {count} pings, {MOST_TICKS} at most: give a part of it")
+    took = np.full(count, np.nan)
+    for each in reversed(told):  # of doubles the first counts
+        if not np.isnan(each.took):
+            took[each.number - first] = each.took
+    return took
 
 
-def _in_order(text: str) -> Array:
+def _range(told: list[_Numbered], lines: list[str]) -> tuple[int, int]:
+    """Of the numbers: those that are told of, and in a whole output those before and after."""
+    first = min(each.number for each in told)
+    last = max(each.number for each in told)
+    sent = next((int(found[1]) for line in lines if (found := SENT.match(line))), 0)
+    begins = first <= 1 or any(line.startswith(HEADING) for line in lines)
+    if begins and last <= sent:
+        first = min(first, 1)
+        last = max(last, first + sent - 1)
+    return first, last
+
+
+def _in_order(lines: list[str]) -> Array:
     """Windows prints no numbers, but a line for each."""
-    return np.array([1e-3 * float(each["ms"] or "nan") for each in WINDOWS.finditer(text)])
+    found = [each for line in lines if (each := WINDOWS.match(line))]
+    return np.array([1e-3 * float(each["ms"] or "nan") for each in found])
 
 
-def _interval(text: str, count: int) -> tuple[float, bool]:
+def _interval(told: list[_Numbered], lines: list[str], count: int) -> tuple[float, bool]:
     """[s] From ping to ping, and whether the output tells."""
-    times = [float(found["at"]) for found in ANSWER.finditer(text) if found["at"]]
+    times = [each.at for each in told if each.at is not None and not np.isnan(each.took)]
     if len(times) > 1:
         return float(np.median(np.diff(times))), True
-    took = TOOK.search(text, text.rfind("packets transmitted"))
-    if took and count > 1:
+    ends = (TOOK.search(line) for line in lines if SENT.match(line))
+    if count > 1 and (took := next((found for found in ends if found), None)):
         return 1e-3 * int(took[1]) / (count - 1), True
     return USUAL, False

@@ -1,6 +1,7 @@
 """What a file is, by what is in it."""
 
 import gzip
+import zlib
 from pathlib import Path
 
 from laglab.link.errors import LinkFileError
@@ -10,9 +11,9 @@ from laglab.link.importing.irtt import read_irtt
 from laglab.link.importing.mahimahi import is_trace, read_mahimahi
 from laglab.link.importing.ping import is_ping, read_ping
 from laglab.link.importing.tables import numbers_of
-from laglab.link.measured import MeasuredLink
-from laglab.link.resampling import resampled
-from laglab_gateway import LinkRow
+from laglab.link.measured import MeasuredLink, problem_of
+from laglab.link.resampling import resampled, ticks_in
+from laglab_gateway import MOST_TICKS, LinkRow
 
 GZIP = b"\x1f\x8b"
 CAPTURES = tuple(
@@ -21,6 +22,8 @@ CAPTURES = tuple(
 """pcap in both orders, with micro- or nanoseconds; pcapng."""
 FRAME_START, FRAME_AT = 0xFD, 8
 HEADING = ",".join(LinkRow._fields)
+MOST_BYTES = 256 * 2**20
+"""Of a file, unpacked."""
 
 
 def read_link(path: Path, how: How) -> MeasuredLink:
@@ -29,16 +32,34 @@ def read_link(path: Path, how: How) -> MeasuredLink:
     Raises LinkFileError: nothing is known in it, or what it is cannot be read.
     """
     measured = _read(path, how)
-    return measured if how.interval is None else resampled(measured, how.interval)
+    if (problem := problem_of(measured)) is not None:
+        raise LinkFileError(f"{path}: {problem}")
+    if how.interval is None:
+        return measured
+    if (ticks := ticks_in(measured, how.interval)) > MOST_TICKS:
+        raise LinkFileError(
+            f"{path}: {ticks:.3g} ticks of {how.interval:g} s, {MOST_TICKS} at most: give a longer "
+            "--interval"
+        )
+    return resampled(measured, how.interval)
+
+
+def _bytes_of(path: Path) -> bytes:
+    """Unpacked. Raises LinkFileError."""
+    try:
+        with path.open("rb") as file:
+            packed = file.read(len(GZIP)) == GZIP
+        with gzip.open(path) if packed else path.open("rb") as file:
+            data = file.read(MOST_BYTES + 1)
+    except (OSError, EOFError, zlib.error) as error:
+        raise LinkFileError(f"{path} cannot be read: {error}") from error
+    if len(data) > MOST_BYTES:
+        raise LinkFileError(f"{path}: more than {MOST_BYTES >> 20} MB: give a part of it")
+    return data
 
 
 def _read(path: Path, how: How) -> MeasuredLink:
-    try:
-        data = path.read_bytes()
-        if data.startswith(GZIP):
-            data = gzip.decompress(data)
-    except (OSError, EOFError) as error:
-        raise LinkFileError(f"{path} cannot be read: {error}") from error
+    data = _bytes_of(path)
     if data.startswith(CAPTURES):
         return read_capture(path, how)
     if len(data) > FRAME_AT and data[FRAME_AT] == FRAME_START:
@@ -53,9 +74,9 @@ def _read_text(text: str, path: Path, how: How) -> MeasuredLink:
         raise LinkFileError(f"{path} is a link.csv already: give it to `laglab link fit`")
     numbers = numbers_of(text)
     if numbers and is_trace(numbers):
-        return read_mahimahi(numbers, how)
+        return read_mahimahi(numbers, how, str(path))
     if is_ping(text):
-        return read_ping(text, how)
+        return read_ping(text, how, str(path))
     raise LinkFileError(
         f"{path}: none of what is known here: ping's output, irtt's JSON, a mahimahi trace, a "
         "table of netem's, a telemetry log, a capture"

@@ -11,6 +11,8 @@ from laglab_gateway import ExtraDelay
 SCALE = 8192
 """In a table, a standard deviation."""
 QUANTILES = 65
+MOST = 2**15
+"""Of what stands in a table: netem has 16 bits for it."""
 
 
 def numbers_of(text: str) -> list[int] | None:
@@ -24,7 +26,8 @@ def numbers_of(text: str) -> list[int] | None:
 
 def is_table(numbers: Sequence[int]) -> bool:
     """Whether these may be one: a table rises, and has delays below the mean."""
-    return len(numbers) > 1 and numbers[0] < 0 <= numbers[-1] and list(numbers) == sorted(numbers)
+    rises = list(numbers) == sorted(numbers)
+    return len(numbers) > 1 and rises and -MOST <= numbers[0] < 0 <= numbers[-1] < MOST
 
 
 def read_table(path: Path, mean: float | None, spread: float | None) -> ExtraDelay | None:

@@ -25,12 +25,12 @@ def save(figure: Figure, path: Path) -> None:
         figure.savefig(file, format=_format(path), dpi=DOTS_PER_INCH)
 
 
-def picture_place(path: Path) -> Path:
-    """Where `--out` wants a picture: it can be drawn there. Raises PlaceError."""
+def picture_place(path: Path, named: str = "--out") -> Path:
+    """Where the option wants a picture: it can be drawn there. Raises PlaceError."""
     known = sheet(1, 1).canvas.get_supported_filetypes()
     if _format(path) not in known:
-        raise PlaceError(f"--out {path}: its name must end in one of {', '.join(known)}")
-    return file_place("--out", path)
+        raise PlaceError(f"{named} {path}: its name must end in one of {', '.join(known)}")
+    return file_place(named, path)
 
 
 def _format(path: Path) -> str:

@@ -16,9 +16,11 @@ Delay = Annotated[Ticks, Field(lt=UNKNOWN_DELAY)]
 
 def _readable(log: Path) -> Path:
     try:
-        read_link_log(log, "command")
+        told = read_link_log(log, "command"), read_link_log(log, "measurement")
     except TimelineError as error:
         raise ValueError(str(error)) from error
+    if not any(told):
+        raise ValueError(f"{log} tells of no frame: an ideal link leaves no trace, nor needs one")
     return log.resolve()
 
 
