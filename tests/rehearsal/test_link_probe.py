@@ -149,6 +149,29 @@ def test_an_end_that_hears_nothing_tells_of_nothing_and_is_forgotten() -> None:
     assert echo.say(10**10) is None
 
 
+def test_who_measures_slowly_is_not_forgotten_in_between() -> None:
+    echo = Echo(FILLER)
+    slow = Probe(0, (0, 0, 0), 1, 5, 2_000_000, (NO_PROBE,) * 3, FILLER)
+    echo.hear(slow, 0)
+    assert echo.take_over(6 * 10**9 - 1) is None
+    assert echo.take_over(6 * 10**9) is not None
+    echo.hear(Probe(0, (0, 0, 0), 1, 5, 2**32 - 1, (NO_PROBE,) * 3, FILLER), 0)
+    assert echo.take_over(30 * 10**9) is not None, "nobody keeps it for an hour"
+
+
+def test_somebody_is_asked_twice_however_long_the_interval(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with open_endpoint("udpin://127.0.0.1:0") as silent:
+        url = silent.name.replace("udpin", "udpout")
+        code, line = refused(capsys, "probe", url, "--wait", "0.1", "--interval", "0.2")
+        assert [bool(silent.receive(0.0)) for _ in range(3)] == [True, True, False]
+    assert code == 4
+    assert "nobody answers (0.4 s)" in line
+    assert "it answers one `laglab link probe` at a time" in line
+
+
 def test_a_line_that_carries_less_than_a_run_says_is_told() -> None:
     sizes = Sizes(121, 75)
     said = overload("serial:///dev/ttyUSB0:57600", sizes, 0.01)
