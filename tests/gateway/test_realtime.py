@@ -99,6 +99,8 @@ class SimulatedLink:
 
     def accept_peer(self) -> None: ...
 
+    def leave_peer(self) -> None: ...
+
 
 class Kept(Recorder):
     def __init__(self) -> None:

@@ -73,6 +73,8 @@ class BreakingLink:
 
     def accept_peer(self) -> None: ...
 
+    def leave_peer(self) -> None: ...
+
 
 def test_a_link_that_breaks_leaves_the_trace_and_what_the_link_did_up_to_the_same_tick(
     tmp_path: Path,

@@ -102,6 +102,25 @@ def test_a_later_accepted_peer_replaces_the_first(stack: ExitStack) -> None:
     assert station.receive(0.02) == b""
 
 
+def test_beside_a_peer_that_was_left_nobody_is_a_stranger(stack: ExitStack) -> None:
+    robot, station = udp_pair(stack)
+    others = [stack.enter_context(open_endpoint(station.name)) for _ in range(2)]
+    station.send(b"hello")
+    robot.receive(WAIT)
+    robot.accept_peer()
+    robot.leave_peer()
+    robot.send(b"to nobody")
+    for _ in range(20):
+        others[0].send(bytes(1400))  # strangers' ration of three seconds
+    others[1].send(b"now me")
+    heard = [robot.receive(WAIT) for _ in range(21)]
+    assert heard[-1] == b"now me"
+    robot.accept_peer()
+    robot.send(b"answer")
+    assert others[1].receive(WAIT) == b"answer"
+    assert station.receive(0.02) == b""
+
+
 def test_udpout_before_anybody_listens(stack: ExitStack) -> None:
     with open_endpoint("udpin:127.0.0.1:0") as taken:
         name = taken.name

@@ -1,11 +1,14 @@
 """A link is measured: by the cores in a world of numbers, by processes on real links."""
 
+import contextlib
 import csv
 import heapq
 import signal
 import subprocess
+import threading
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -13,12 +16,27 @@ import pytest
 
 from laglab.command import main
 from laglab.link.measured import bursts, read_measured
-from laglab.link.probing import Clocks, Prober, Sizes, real_sizes, seen_by_clocks
+from laglab.link.probing import Clocks, Prober, Sizes, ends, real_sizes, seen_by_clocks
+from laglab.link.probing import echo as answer
 from laglab.link.probing.clocks import ClockTimes, lowest_line
 from laglab.link.probing.ends import Echo
 from laglab.link.probing.probe import hidden_arrivals
 from laglab.link.probing.sizes import overload
-from laglab_protocol import NO_PROBE, PROBE_FILLER, Probe, Sender, make_key, open_endpoint
+from laglab_protocol import (
+    NO_PROBE,
+    PROBE_FILLER,
+    ROBOT_COMPONENT,
+    ROBOT_SYSTEM,
+    STATION_COMPONENT,
+    STATION_SYSTEM,
+    Codec,
+    Endpoint,
+    Listener,
+    Probe,
+    Sender,
+    make_key,
+    open_endpoint,
+)
 
 Laglab = Callable[..., subprocess.CompletedProcess[str]]
 Start = Callable[..., "subprocess.Popen[str]"]
@@ -131,6 +149,29 @@ def test_an_end_that_hears_nothing_tells_of_nothing_and_is_forgotten() -> None:
     assert echo.say(10**10) is None
 
 
+def test_who_measures_slowly_is_not_forgotten_in_between() -> None:
+    echo = Echo(FILLER)
+    slow = Probe(0, (0, 0, 0), 1, 5, 2_000_000, (NO_PROBE,) * 3, FILLER)
+    echo.hear(slow, 0)
+    assert echo.take_over(6 * 10**9 - 1) is None
+    assert echo.take_over(6 * 10**9) is not None
+    echo.hear(Probe(0, (0, 0, 0), 1, 5, 2**32 - 1, (NO_PROBE,) * 3, FILLER), 0)
+    assert echo.take_over(30 * 10**9) is not None, "nobody keeps it for an hour"
+
+
+def test_somebody_is_asked_twice_however_long_the_interval(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with open_endpoint("udpin://127.0.0.1:0") as silent:
+        url = silent.name.replace("udpin", "udpout")
+        code, line = refused(capsys, "probe", url, "--wait", "0.1", "--interval", "0.2")
+        assert [bool(silent.receive(0.0)) for _ in range(3)] == [True, True, False]
+    assert code == 4
+    assert "nobody answers (0.4 s)" in line
+    assert "it answers one `laglab link probe` at a time" in line
+
+
 def test_a_line_that_carries_less_than_a_run_says_is_told() -> None:
     sizes = Sizes(121, 75)
     said = overload("serial:///dev/ttyUSB0:57600", sizes, 0.01)
@@ -182,6 +223,54 @@ def echoing(start: Start) -> Callable[..., str]:
         return line.split("udpin://")[1].split(": ")[0]
 
     return call
+
+
+class EnoughError(Exception):
+    """An echo has nothing more to do."""
+
+
+def test_after_a_flood_the_next_is_answered_at_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(ends, "FORGOTTEN", 0.2)
+    make_key(tmp_path / "key")
+    over = [threading.Event(), threading.Event()]
+
+    def tell(line: str) -> None:
+        if "no longer measured" in line:
+            next(each for each in over if not each.is_set()).set()
+        if over[1].is_set():
+            raise EnoughError
+
+    def answering(link: Endpoint) -> None:
+        with (
+            Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, tmp_path / "key") as codec,
+            contextlib.suppress(EnoughError),
+        ):
+            answer(Listener(link, codec.receiver), codec, tell)
+
+    with (
+        open_endpoint("udpin://127.0.0.1:0") as robot,
+        Codec(STATION_SYSTEM, STATION_COMPONENT, tmp_path / "key") as station,
+        ThreadPoolExecutor() as pool,
+    ):
+        echoes = pool.submit(answering, robot)
+        for session, ended in enumerate(over):
+            with (
+                open_endpoint(robot.name.replace("udpin", "udpout")) as prober,
+                open_endpoint(robot.name.replace("udpin", "udpout")) as stranger,
+            ):
+                said = b""
+                for _ in range(100):
+                    asked = Probe(0, (0,) * 3, 9 * session, 0, 10_000, (NO_PROBE,) * 3, FILLER)
+                    prober.send(station.sender.frame(asked))
+                    if said := prober.receive(0.05):
+                        break
+                assert said, "more than twenty seconds' rations of strangers' are before it"
+                assert ended.wait(10)
+                for _ in range(300):
+                    stranger.send(b"\xfd" * 1400)
+        echoes.result(10)
 
 
 def test_over_udp_frames_have_the_sizes_of_a_run_signed_or_not(

@@ -55,6 +55,11 @@ class Link(Protocol):
         accept, so that a stranger's garbage cannot take the link. Nothing happens elsewhere.
         """
 
+    def leave_peer(self) -> None:
+        """The talk with the peer is over: for udpin nobody is it, and all are heard alike, until
+        another is accepted. Nothing happens elsewhere.
+        """
+
     def reopen(self) -> None:
         """After FarEndGoneError: open the same again. Raises the EndpointError tree."""
 

@@ -57,6 +57,9 @@ class _Tty(ABC):
     def accept_peer(self) -> None:
         return
 
+    def leave_peer(self) -> None:
+        return
+
     def receive(self, timeout: float) -> bytes:
         return first_bytes(self._read, self.fileno, timeout)
 

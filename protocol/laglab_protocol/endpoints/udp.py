@@ -53,6 +53,9 @@ class _Udp(ABC):
     def accept_peer(self) -> None:
         return
 
+    def leave_peer(self) -> None:
+        return
+
     @abstractmethod
     def send(self, data: bytes, to: Address | None = None) -> None: ...
 
@@ -150,6 +153,10 @@ class UdpIn(_Udp):
             self._end_queue()
             self.peer = self.sender
             self._apart = queue_for(self.peer, self._socket)
+
+    def leave_peer(self) -> None:
+        self._end_queue()
+        self.peer = None
 
     def _end_queue(self) -> None:
         self._watch(set())

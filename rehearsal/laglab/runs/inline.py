@@ -54,5 +54,8 @@ class InlineLink:
     def accept_peer(self) -> None:
         """There is no other peer."""
 
+    def leave_peer(self) -> None:
+        """There is no other peer."""
+
     def reopen(self) -> None:
         """It never breaks."""

@@ -32,6 +32,7 @@ def echo(link: Listener, codec: Codec, tell: Callable[[str], None]) -> None:
         while (said := end.say(clock())) is not None:
             link.link.offer(sender.frame(said))
         if ended := end.take_over(clock()):
+            link.link.leave_peer()  # whoever measures next is no stranger beside it
             tell(f"no longer measured: {ended.heard} frames came, {ended.said} were sent")
         for line in refusals.news([link], clock() * 1e-9):
             tell(f"warning: {line}")

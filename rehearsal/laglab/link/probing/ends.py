@@ -13,7 +13,9 @@ SESSIONS = 2**32
 KEPT = 2 * PROBE_LAGS[-1]
 """Arrivals."""
 FORGOTTEN = 1.0
-"""[s] Without a probe for so long a session is over."""
+"""[s] Without a probe for so long a session is over, and for so many intervals:"""
+MISSED, LONGEST = 3, 10_000_000
+"""Of intervals no longer than this [us]."""
 
 
 def following(session: int) -> int:
@@ -68,7 +70,7 @@ class Echo:
     def is_for(self, probe: Probe, now_ns: int) -> bool:
         """Whether this one is answered: another session waits until this one is over, but for the
         next number, which is the same measurer's."""
-        if self.end is None or (now_ns - self._heard_ns) * 1e-9 >= FORGOTTEN:
+        if self.end is None or self._is_over(self.end, now_ns):
             return True
         return probe.session in (self.end.session, following(self.end.session))
 
@@ -96,10 +98,14 @@ class Echo:
     def take_over(self, now_ns: int) -> ProbeEnd | None:
         """The session that has ended by now; there is none any more."""
         ended = self.end
-        if ended is None or (now_ns - self._heard_ns) * 1e-9 < FORGOTTEN:
+        if ended is None or not self._is_over(ended, now_ns):
             return None
         self.end = None
         return ended
+
+    def _is_over(self, end: ProbeEnd, now_ns: int) -> bool:
+        silent = max(FORGOTTEN, MISSED * min(end.interval_us, LONGEST) * 1e-6)
+        return (now_ns - self._heard_ns) * 1e-9 >= silent
 
 
 class Prober:

@@ -92,9 +92,10 @@ def probe(
 
 
 def _find(talk: _Talk, prober: Prober, plan: ProbePlan, name: str) -> None:
-    """Ask until somebody answers."""
+    """Ask until somebody answers, twice at least."""
     due = talk.clock()
-    end = due + int(plan.wait * 1e9)
+    wait = max(plan.wait, 2 * plan.interval)
+    end = due + int(wait * 1e9)
     while due < end:
         talk.say(prober)
         due += int(max(plan.interval, LEAST_ASKED) * 1e9)
@@ -107,8 +108,8 @@ def _find(talk: _Talk, prober: Prober, plan: ProbePlan, name: str) -> None:
                     )
                 return
     raise NobodyAnswersError(
-        f"{name}: nobody answers ({plan.wait:g} s): start `laglab link echo` at the far end, with "
-        "the same --key or none"
+        f"{name}: nobody answers ({wait:g} s): start `laglab link echo` at the far end, with the "
+        "same --key or none; or it is busy: it answers one `laglab link probe` at a time"
     )
 
 
