@@ -5,13 +5,17 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from threading import Event
 
 import numpy as np
 import pytest
 
 from laglab.command import main
+from laglab.runs import rehearse
+from laglab.runs.waiting import in_time
 from laglab.scenario import load
 from laglab.studies.sweep.study import Study
+from laglab_control import PluginError
 
 Laglab = Callable[..., "subprocess.CompletedProcess[str]"]
 
@@ -486,3 +490,21 @@ def test_two_machines_of_which_only_the_station_has_it(
     for side in (station, gateway):
         _, errors = side.communicate(timeout=60)
         assert side.returncode == 0, errors
+
+
+def test_what_is_never_made_is_given_up() -> None:
+    never = Event()
+    with pytest.raises(PluginError, match=r"mine:Slow does not come back: 0\.05 s were not enough"):
+        in_time("mine:Slow", lambda: never.wait(60), seconds=0.05)
+    never.set()
+    with pytest.raises(ZeroDivisionError):
+        in_time("mine:Slow", lambda: 1 / 0)
+
+
+def test_a_side_that_does_not_start_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(rehearse, "START", -1.0)
+    ending = rehearse.rehearse_apart(load("lab", {}), "udp", tmp_path)
+    assert ending.problem == "the robot's side did not start within -1 s: robot"
+    assert ending.exit_code == 2

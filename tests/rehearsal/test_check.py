@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from laglab.check import checked
+from laglab.check import CheckOrder, checked, checked_apart
 from laglab.check.finding import all_hold
 from laglab.check.subject import Kind, kind_of
 from laglab.command import main
-from laglab.errors import ScenarioError
+from laglab.errors import LaglabError, ScenarioError
 from laglab.scenario.tables.plant import SHIPPED as PLANTS
 from laglab_control import ESTIMATORS, LAWS, PluginError
 
@@ -440,3 +440,45 @@ def test_the_kind_is_known_by_name_or_methods(
         kind_of("broken_parts:made_by_a_function", None)
     with pytest.raises(PluginError):
         list(checked("law", "nobody"))
+
+
+STUCK = """
+import os, time
+
+
+class Law:
+    def __init__(self, goal):
+        pass
+
+
+class Sleeping(Law):
+    def drive(self, pose, time_, memory):
+        time.sleep(3600)
+
+
+class Leaving(Law):
+    def drive(self, pose, time_, memory):
+        os._exit(7)
+"""
+
+
+def test_what_never_answers_or_ends_the_process_fails_its_row(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "stuck.py").write_text(STUCK)
+    monkeypatch.chdir(tmp_path)
+    kind, found = checked_apart(CheckOrder("stuck:Sleeping", None, ()), patience=4.0)
+    assert kind == "law"
+    assert found == [("interface", "no", "it did not answer within 4 s")]
+    _, found = checked_apart(CheckOrder("stuck:Leaving", None, ()))
+    (finding,) = found
+    assert finding.name == "interface"
+    assert finding.said == "the check's process ended with exit code 7 and no word"
+
+
+def test_a_module_that_never_loads(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "endless.py").write_text("import time\ntime.sleep(3600)\n")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(LaglabError, match="it did not answer within 1 s") as raised:
+        checked_apart(CheckOrder("endless:Law", None, ()), patience=1.0)
+    assert raised.value.exit_code == 1

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from laglab.check import Kind, all_hold, checked, findings_table, kind_of
+from laglab.check import CheckOrder, Kind, all_hold, checked_apart, findings_table
 from laglab.errors import ScenarioError
 from laglab.scenario import assignment
 from laglab.tables import terminal
@@ -32,12 +32,11 @@ def check(
 
     A row for each thing that can be wrong; exit code 1 when one does not hold.
     """
-    kind = kind_of(name, as_)
     try:
-        options = dict(map(assignment, option or []))
+        dict(map(assignment, option or []))
     except ScenarioError as error:
         raise ScenarioError(str(error).replace("--set", "--option")) from None
-    found = list(checked(kind, name, options))
+    kind, found = checked_apart(CheckOrder(name, as_, tuple(option or ())))
     console = terminal()
     console.print(findings_table(found), highlight=False)
     held = all_hold(found)

@@ -1,6 +1,7 @@
 """`laglab run`."""
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -18,8 +19,10 @@ from laglab.runs.plant import check_plant
 from laglab.runs.rehearse import Transport
 from laglab.runs.robot_side import Setup, wrapped_replay
 from laglab.runs.station_side import check_parts
+from laglab.runs.waiting import in_time
 from laglab.runs.whole import run_into
 from laglab.scenario import Scenario
+from laglab_control import is_module_class
 
 KeyOption = Annotated[
     Path | None,
@@ -76,9 +79,9 @@ def run(
         raise ScenarioError("--plant: a real robot does not wait: take --transport udp or serial")
     setup = Setup(plant, key, plant_key=plant_key)
     setup.check()
-    check_parts(scenario)
+    in_time(_parts(scenario), partial(check_parts, scenario))
     if plant is None:
-        check_plant(scenario)
+        in_time(scenario.plant.called, partial(check_plant, scenario))
     if said := wrapped_replay(scenario):
         typer.echo(said, err=True)
     way = Way("both", transport, plant or scenario.plant.called)
@@ -88,3 +91,9 @@ def run(
             setup = replace(setup, live=page.line if page else None)
             ending = run_into(directory, scenario, transport, told, setup)
         conclude(scenario, way, ending, directory, report, page)
+
+
+def _parts(scenario: Scenario) -> str:
+    """What somebody else may have written of them."""
+    kinds = (scenario.estimator.kind, *scenario.estimator.compare, scenario.law.kind)
+    return " or ".join([kind for kind in kinds if is_module_class(kind)] or kinds)

@@ -29,6 +29,7 @@ from laglab.runs.reports import (
 )
 from laglab.runs.robot_side import Setup, open_robot
 from laglab.runs.station_side import make_station
+from laglab.runs.waiting import START
 from laglab.scenario import Scenario
 from laglab_control import Controller, StationConfig
 from laglab_gateway import Outcome, Recorder, Surroundings
@@ -158,7 +159,12 @@ class _Rehearsal:
         return self._summed_up()
 
     def _first_address(self) -> str | None:
+        deadline = monotonic() + START
         while not self._over:
+            if monotonic() > deadline:
+                called = self._scenario.plant.called
+                self._fail(f"the robot's side did not start within {START:g} s: {called}", False)
+                return None
             match self._next_letter():
                 case _, Listening(address):
                     return address

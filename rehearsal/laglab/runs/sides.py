@@ -20,13 +20,11 @@ from laglab.runs.reports import (
 )
 from laglab.runs.robot_side import Setup, open_robot
 from laglab.runs.station_side import open_station
+from laglab.runs.waiting import START
 from laglab.scenario import Scenario
 from laglab_gateway import FileRecorder, Patience, Surroundings
 from laglab_protocol import Listener, open_endpoint
 from laglab_station import run_station
-
-CONNECT = 30.0
-"""[s] The other side was started by the same hand: it comes soon, or never."""
 
 
 def robot_side(order: Order, tell: Tell) -> None:
@@ -49,7 +47,7 @@ def robot_side(order: Order, tell: Tell) -> None:
                 Surroundings(
                     Listener(endpoint, robot.codec.receiver),
                     recorder,
-                    Patience(silence=scenario.silence_timeout, connect=CONNECT),
+                    Patience(silence=scenario.silence_timeout, connect=START),
                     progress=clock,
                     warn=lambda text: tell(Warned(text)),
                 )
