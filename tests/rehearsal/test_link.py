@@ -191,7 +191,7 @@ def test_a_run_moves_with_what_it_refers_to(
 def test_a_timeline_told_by_hand_beats_a_replay_of_the_file(
     rehearsed: Rehearsed, tmp_path: Path
 ) -> None:
-    (tmp_path / "link.csv").write_text(LINK_HEADER)
+    (tmp_path / "link.csv").write_text(LINK_HEADER + "command,0,0,0,35,delivered,0.01\n")
     (tmp_path / "outage.toml").write_text("[[event]]\nlink = { loss = 1.0 }\n")
     own = tmp_path / "own.toml"
     own.write_text("link.replay = 'link.csv'\nduration = 0.5\n")

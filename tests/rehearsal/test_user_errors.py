@@ -119,6 +119,7 @@ BROKEN_FILES = {
     "variances above 0, of x, y and theta, not [0.0, 0.1, 0.1]",
     "safety.ramp = -1.0": "safety.ramp: must be 0 or more, not -1.0",
     f"seed = {'[' * 3000}": "not a readable TOML file: nested too deeply",
+    f"seed{'.a' * 3000} = 1": "not a readable TOML file: nested too deeply",
     f"seed = 1{'0' * 5000}": "not a readable TOML file",
     f"name = [{'1,' * 5000}]": "name: must be text, not [1, 1, 1",
 }
