@@ -25,6 +25,8 @@ TRAY = Wiring(
     {"v": "forward", "omega": "turning"}, {"x": "pose[1]", "y": "pose[2]", "theta": "pose[3]"}
 )
 
+TOLD = r", inputs drive\.cmd_left=1, drive\.cmd_right=1"
+
 
 def driven(
     file: Path, wiring: Wiring, inputs: tuple[float, float], ticks: int = 100
@@ -127,8 +129,8 @@ def test_a_step_of_its_own_is_kept(tmp_path: Path, library: Path) -> None:
 @pytest.mark.parametrize(
     ("parameter", "said"),
     [
-        ("fail_at", r"rover.fmu: tick 10: fmi2DoStep failed \(error\); the left motor is on fire"),
-        ("discard_at", r"rover.fmu: tick 10: fmi2DoStep failed \(discard\)"),
+        ("fail_at", rf"rover.fmu: tick 10: fmi2DoStep failed \(error\){TOLD}; the left motor"),
+        ("discard_at", rf"tick 10: fmi2DoStep failed \(discard\){TOLD}; it logged nothing$"),
         ("nan_at", r"rover.fmu: tick 10: posX is nan"),
     ],
 )
@@ -141,7 +143,7 @@ def test_what_fails_on_the_way_is_told(fmus: Path, parameter: str, said: str) ->
 
 def test_what_fails_under_the_solver_is_told(fmus: Path) -> None:
     wiring = Wiring(WHEELS, POSE, START, {"fail_at": 0.105})
-    with pytest.raises(CallError, match=r"fmi2GetDerivatives failed \(error\); the left motor"):
+    with pytest.raises(CallError, match=rf"GetDerivatives failed \(error\){TOLD}; the left"):
         driven(fmus / "rover-me.fmu", wiring, (1.0, 1.0))
 
 

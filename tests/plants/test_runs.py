@@ -156,7 +156,8 @@ def test_what_fails_ends_the_run_and_leaves_the_record(
     assert code == 4
     lines = said.splitlines()
     assert lines[0] == (
-        "laglab: rover.fmu: tick 100: fmi2DoStep failed (error); the left motor is on fire at 1 s"
+        "laglab: rover.fmu: tick 100: fmi2DoStep failed (error), inputs "
+        "drive.cmd_left=2.74957, drive.cmd_right=-2.74957; the left motor is on fire at 1 s"
     )
     assert len(read_trace(tmp_path / "out" / "trace.csv")["tick"]) == 100
 

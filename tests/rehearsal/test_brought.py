@@ -148,6 +148,14 @@ class Markup(At40):
         raise ValueError("[/nope] see [bold] :cat:")
 
 
+class Guarded(Watchable):
+    """Nothing has come yet, so nothing is corrected."""
+
+    def predict(self, state, u):
+        right = super().predict(state, u)
+        return right._replace(x=right.x + 0j) if state.tick == 5 else right
+
+
 class Silent(Exception):
     def __str__(self):
         raise RuntimeError
@@ -490,6 +498,17 @@ def test_two_machines_of_which_only_the_station_has_it(
     for side in (station, gateway):
         _, errors = side.communicate(timeout=60)
         assert side.returncode == 0, errors
+
+
+def test_a_guard_lets_no_such_state_pass(
+    mine: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(mine)
+    own = ("--estimator", "mine:Guarded", "--set", "estimator.guard=true")
+    code, stderr = in_this_process(capsys, *LAB, *own, "--transport", "inline")
+    failed_as_it_must(
+        mine / "run", code, stderr, "tick 6: mine:Guarded.predict must answer a finite array x"
+    )
 
 
 def test_what_is_never_made_is_given_up() -> None:

@@ -66,8 +66,8 @@ class Brought(Estimator[State]):
         return self._whole("start", self._said("start", x, P), 0)
 
     def predict(self, state: State, u: Vector) -> State:
-        """One tick further; what it holds is looked at once it is corrected."""
-        return self._in_time("predict", self._said("predict", state, u), state.tick + 1)
+        """One tick further; a guard asks for no correction where nothing came."""
+        return self._whole("predict", self._said("predict", state, u), state.tick + 1)
 
     def correct(
         self, state: State, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
@@ -86,7 +86,7 @@ class Brought(Estimator[State]):
         """The same, prepared."""
         if not self._has("expect"):
             return state
-        return self._in_time("expect", self._said("expect", state, s), state.tick)
+        return self._whole("expect", self._said("expect", state, s), state.tick)
 
     def calibrated(self, state: State, robot: Ways) -> Ways:
         """The robot as it is known by now."""
@@ -143,17 +143,16 @@ class Brought(Estimator[State]):
     def _failed(self, method: str, wanted: str) -> PluginFailedError:
         return PluginFailedError(f"{self.name}.{method} must answer {wanted}")
 
-    def _in_time(self, method: str, state: State, tick: int) -> State:
+    def _refuse_other(self, method: str, state: State, tick: int) -> None:
         try:
             there = state.tick
         except AttributeError:
             raise self._failed(method, f"a state with tick, x and P, not {shown(state)}") from None
         if there != tick:
             raise self._failed(method, f"a state of tick {tick}, not {shown(there)}")
-        return state
 
     def _whole(self, method: str, state: State, tick: int) -> State:
-        self._in_time(method, state, tick)
+        self._refuse_other(method, state, tick)
         try:
             x, P, pose = state.x, state.P, pose_of(state)
         except (AttributeError, TypeError, ControlError) as error:

@@ -49,6 +49,7 @@ class ForeignRobot:
         self._substeps = substeps(file, sample_time)
         self.log = Log()
         self._tick, self._runs = 0, False
+        self._told: Sequence[float] = ()
         with ExitStack() as stack:
             self._fmu: Any = stack.enter_context(instance(file, self.log))
             elements = output_elements(file, wiring.outputs)
@@ -63,6 +64,7 @@ class ForeignRobot:
         elements = start_elements(self._file, self._wiring.start)
         values = {**self._wiring.parameters, **starting(elements, start)}
         self._tick, self._numbers = 0, ()
+        self._told = ()
         try:
             initialize(self._file, self._fmu, values)
             self._integrator = None
@@ -81,6 +83,7 @@ class ForeignRobot:
             CallError: the FMU failed; names the call and the variables.
         """
         time = self._tick * self._sample_time
+        self._told = inputs
         try:
             if self._integrator is None:
                 self._writer.write(inputs)
@@ -134,8 +137,15 @@ class ForeignRobot:
             said = f"{error.function}{of} failed ({status})"
         else:
             said = str(error)
-        said = "; ".join((said, *list(self.log.lines)[-SAID:]))
+        logged = list(self.log.lines)[-SAID:] or ["it logged nothing"]
+        said = "; ".join((said + self._inputs(), *filter(None, logged)))
         return CallError(f"{self._file.path.name}: tick {self._tick}: {said}")
+
+    def _inputs(self) -> str:
+        """What it was told last, by its own names."""
+        pairs = zip(self._wiring.inputs.values(), self._told, strict=False)
+        told = ", ".join(f"{name}={number:g}" for name, number in pairs)
+        return f", inputs {told}" if told else ""
 
     def close(self) -> None:
         """Ends and frees the instance, removes the extracted files. Twice does no harm."""

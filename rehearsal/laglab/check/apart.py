@@ -27,7 +27,7 @@ ROWS: Mapping[Kind, Sequence[str]] = {
 
 
 class NoAnswerError(LaglabError):
-    """Before the first row; the text says of what."""
+    """What is to be checked cannot even be loaded in time; the text names it."""
 
     exit_code = 1
 

@@ -47,12 +47,13 @@ def check(
     if fmu:
         console.print(headed(fmu), highlight=False, soft_wrap=True)
         console.print(offered(fmu, proposal), highlight=False)
-        print()
     scenario = _of_fmu(fmu.path, proposal.fields(), overrides) if fmu else load(file, overrides)
     check_plant(scenario)
     with status() as tell:
         tell("driving it")
         trial = tried(scenario)
+    if fmu:
+        print()
     console.print(shown(trial), highlight=False)
     if scenario.plant.fmu:
         print()
