@@ -10,7 +10,7 @@ project = "laglab"
 project_copyright = "the laglab developers"
 release = version = __version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 root_doc = "docs/index"
 exclude_patterns = [".*"]
 include_patterns = ["docs/**.md", "*.md", "*/README.md", "examples/*/README.md"]
@@ -44,4 +44,4 @@ def _as_literal(*told: object) -> None:
 
 def setup(app: Sphinx) -> None:
     """What Sphinx calls."""
-    app.connect("autodoc-process-docstring", _as_literal)
+    app.connect("autodoc-process-docstring", _as_literal, priority=400)  # before napoleon

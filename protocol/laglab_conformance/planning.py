@@ -2,7 +2,7 @@
 
 from laglab_conformance.items import Item
 from laglab_conformance.robot import CREEP, RobotSession, creep, creeps, measurements
-from laglab_conformance.session import DoesNotApplyError
+from laglab_conformance.session import DoesNotApplyError, NoReactionError
 from laglab_protocol.plans import Planned
 
 LENGTH = 100
@@ -42,7 +42,10 @@ def _whole_or_not(session: RobotSession) -> str | None:
     command = session.command(stamp, v=CREEP, plan=LENGTH)
     *frames, _ = Planned(command, stamp, creeping).frames()
     session.send(*frames, command)
-    told = session.watch(creeps, session.refusal)
+    try:
+        told = session.watch(creeps, session.refusal)
+    except NoReactionError:  # it waits for the repeat that brings all
+        told = None
     _stand(session)
     return f"command {stamp} is followed, of whose plan a frame is missing" if told else None
 
