@@ -32,26 +32,19 @@ PERIOD = 0.1
 GOODBYE = 0.5
 """[s]"""
 POLITE = 19
+"""The loop goes first; but no further down, or a page starves on a machine that is busy."""
 
 
 def serve(order: LiveOrder, tell: Tell) -> None:
     """Until our parent wants us to go."""
-    _let_the_loop_go_first()
+    if hasattr(os, "nice"):
+        os.nice(POLITE)
     try:
         asyncio.run(_Server(order).run(tell))
     except OSError as error:
         code = error.errno or 0
         why = os.strerror(code) if code > 0 else error.strerror  # the resolver's are below 0
         tell(Failed(f"--live: cannot listen at {order.host}:{order.port}: {why}", False))
-
-
-def _let_the_loop_go_first() -> None:
-    """Linux has a class of processes for when there is nothing else to do: to the scheduler a
-    processor that one of them runs on is free."""
-    if hasattr(os, "SCHED_IDLE"):
-        os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
-    elif hasattr(os, "nice"):
-        os.nice(POLITE)
 
 
 class _Server(asyncio.DatagramProtocol):
