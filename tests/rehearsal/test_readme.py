@@ -84,7 +84,11 @@ def test_a_bare_clone_installs_and_runs(bare_clone: Path) -> None:
     installed = bare_clone / ".venv" / "bin" / "laglab"
     subprocess.run([installed, "fmu", "build", "--out", "built"], cwd=bare_clone, check=True)
     assert sorted(path.name for path in (bare_clone / "built").iterdir()) == [
+        "Car2.fmu",
+        "Car3.fmu",
         "Fleet3.fmu",
+        "Omni2.fmu",
+        "Omni3.fmu",
         "Robot2.fmu",
         "Robot3.fmu",
     ]
