@@ -8,6 +8,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -226,10 +227,16 @@ static void run(Robot *robot) {
 }
 
 typedef struct {
-    double speed;
-    int playout;
+    double speed, playout;
     const char *key, *device;
 } Options;
+
+/* A whole argument as a number; what is none is not in any range. */
+static double number_of(const char *argument) {
+    char *end;
+    const double number = strtod(argument, &end);
+    return end == argument || *end ? NAN : number;
+}
 
 /* False when they are not as they must be. */
 static bool read_options(int argc, char **argv, Options *options) {
@@ -237,18 +244,19 @@ static bool read_options(int argc, char **argv, Options *options) {
     int i = 1;
     for (; i + 2 < argc; i += 2) {
         if (strcmp(argv[i], "--speed") == 0) {
-            options->speed = atof(argv[i + 1]);
+            options->speed = number_of(argv[i + 1]);
         } else if (strcmp(argv[i], "--key") == 0) {
             options->key = argv[i + 1];
         } else if (strcmp(argv[i], "--playout") == 0) {
-            options->playout = atoi(argv[i + 1]);
+            options->playout = number_of(argv[i + 1]);
         } else {
             return false;
         }
     }
     options->device = argv[argc - 1];
     const bool speed = options->speed > 0 && options->speed <= 100;
-    return i + 1 == argc && speed && options->playout >= 0 && options->playout < INBOX_SLOTS;
+    const bool playout = options->playout >= 0 && options->playout < INBOX_SLOTS && fmod(options->playout, 1.0) == 0;
+    return i + 1 == argc && speed && playout;
 }
 
 int main(int argc, char **argv) {

@@ -114,6 +114,10 @@ def test_the_scores_are_those_of_the_runs() -> None:
         (("--only", "nonsense"), "--only: 'nonsense' is not one of raw, popf"),
         (("--out", "picture.nonsense"), "--out picture.nonsense"),
         (("--duration", "inf"), "duration: must be finite here"),
+        (("--duration", "inf", "--on", "loss", "--only", "plans"), "duration: must be finite here"),
+        (("--pace", "realtime"), "pace: must be lockstep here"),
+        (("--set", "plant.kind=nope"), "no plant 'nope'"),
+        (("--set", "law.kind=nope"), "law.kind: must be one of polar"),
     ],
 )
 def test_what_cannot_be_is_one_line(

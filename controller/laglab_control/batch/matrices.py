@@ -109,6 +109,20 @@ def product(A: Square, B: Square) -> Square:
     )
 
 
+def led(P: Symmetric, dx: Row, dy: Row) -> Symmetric:
+    """J P J^T, J = [1 0 -dy; 0 1 dx; 0 0 1] (`compose`): all but tt in arrays of its own."""
+    xx, xy, xt, yy, yt, tt = P
+    xt_led, yt_led = dy * tt, dx * tt
+    np.subtract(xt, xt_led, xt_led)
+    yt_led += yt
+    xx_led, xy_led, yy_led = dy * (xt + xt_led), dx * xt_led, dx * (yt + yt_led)
+    np.subtract(xx, xx_led, xx_led)
+    xy_led -= dy * yt
+    xy_led += xy
+    yy_led += yy
+    return Symmetric(xx_led, xy_led, xt_led, yy_led, yt_led, tt)
+
+
 def less_outer(P: Symmetric, K: Square, cross: Square) -> Symmetric:
     """P - K cross^T, which is symmetric."""
     return Symmetric(

@@ -10,7 +10,7 @@ from typing import NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab_control.batch.matrices import Symmetric
+from laglab_control.batch.matrices import Symmetric, covariance_of, led
 from laglab_control.batch.rows import Belief, Heading, Pose, Row, Speeds, headings
 from laglab_control.motion import Motion, Way
 from laglab_control.robot import RobotModel
@@ -115,22 +115,13 @@ def uncertain(model: RobotModel, sums: Spread, legs: int, end: Pose) -> Symmetri
 
 def carried(belief: Belief, turn: Turn, way: Pose, P: Symmetric) -> Belief:
     """`compose` of a belief and a stretch: its way as the robot sees it, its P as its odometer."""
-    x, y, theta, xx, xy, xt, yy, yt, tt = belief
     dx, dy, turned = way
-    P_xx, P_xy, P_xt, P_yy, P_yt, P_tt = _rotated(P, turn)
-    xt_led, yt_led = dy * tt, dx * tt
-    np.subtract(xt, xt_led, xt_led)
-    yt_led += yt
-    P_xx -= dy * (xt + xt_led)
-    P_xx += xx
-    P_xy += dx * xt_led
-    P_xy -= dy * yt
-    P_xy += xy
-    P_yy += dx * (yt + yt_led)
-    P_yy += yy
-    xt_led += P_xt
-    yt_led += P_yt
-    return Motion(x + dx, y + dy, theta + turned, P_xx, P_xy, xt_led, P_yy, yt_led, tt + P_tt)
+    xx, xy, xt, yy, yt, tt = led(covariance_of(belief), dx, dy)
+    further = _rotated(P, turn)
+    for each, more in zip((xx, xy, xt, yy, yt), further[:5], strict=True):
+        each += more
+    x, y, theta = belief.x + dx, belief.y + dy, belief.theta + turned
+    return Motion(x, y, theta, xx, xy, xt, yy, yt, tt + further.tt)
 
 
 def _rotated(P: Symmetric, turn: Turn) -> Symmetric:

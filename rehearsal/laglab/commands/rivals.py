@@ -14,6 +14,8 @@ from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, require
 from laglab.progress import tracked
 from laglab.results.figures import picture_place, save
+from laglab.runs.plant import check_plant
+from laglab.runs.station_side import check_parts
 from laglab.scenario import Scenario
 from laglab.studies.rivals import LINKS, OWN_LINK, STRATEGIES, links_of, outcomes, trials
 from laglab.studies.rivals_report import draw_rivals, rivals_table, scores
@@ -55,6 +57,7 @@ def rivals(
     """
     require(REHEARSING)
     picture_place(out)
+    _can_be_repeated(scenario)
     links = _known("--on", on, links_of(scenario))
     strategies = _known("--only", only, STRATEGIES)
     jobs = trials(scenario, links, strategies, seeds)
@@ -66,6 +69,15 @@ def rivals(
     console.print(rivals_table(title, got, links, strategies))
     save(draw_rivals(title, got, links, strategies, width), out)
     console.print(f"picture in {out}", highlight=False)
+
+
+def _can_be_repeated(scenario: Scenario) -> None:
+    """Raises what `laglab run` would, and ScenarioError for a run that is another each time."""
+    scenario.must_end()
+    if scenario.pace != "lockstep":
+        raise ScenarioError(f"{scenario.name}: pace: must be lockstep here, not {scenario.pace}")
+    check_parts(scenario)
+    check_plant(scenario)
 
 
 def _known(option: str, named: Sequence[str] | None, known: Iterable[str]) -> list[str]:
