@@ -41,7 +41,7 @@ do; a traceback is a bug of ours.
 | exit code | |
 |---|---|
 | 0 | the run reached its end, or the command did what it was asked |
-| 1 | `conform`, `protocol lint`, `check` or `soak` found faults |
+| 1 | `conform`, `protocol lint`, `check`, `plant check` or `soak` found faults |
 | 2 | something that was asked for cannot be; nothing has run |
 | 3 | the estimate diverged, and the robot was stopped |
 | 4 | a side, the link or the disk failed, or another station took over |

@@ -5,14 +5,12 @@ from collections.abc import Mapping, Sequence
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from laglab_fmu.models import FLEET_NAME, ROBOT, Model, model_of
+from laglab_fmu.models import FLEET_NAME, Model, model_of
 from laglab_fmu.parameters import INTEGRATIONS
 from laglab_fmu.structure import structure_2, structure_3
 from laglab_fmu.units import TYPES, UNITS, DeclaredType, Unit
 from laglab_fmu.variables import START, Kind, Role, Variable
 
-FMUS = ROBOT.fmus
-"""Of the default robot: model name, which is the model identifier too, and version of FMI."""
 STOP_TIME = 10.0
 """[s] of the default experiment."""
 LOG_CATEGORIES = (

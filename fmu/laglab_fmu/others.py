@@ -1,6 +1,6 @@
 """The tables of the other robots that ship, which are told body speeds."""
 
-from laglab_fmu.variables import Kind, Role, Variable
+from laglab_fmu.variables import REFERENCE, VARIABLES, Role, Variable
 
 _COMMANDS = ("v_command", "omega_command")
 _DRAWN = ("seed", "noise")
@@ -137,47 +137,8 @@ def _common() -> tuple[Variable, ...]:
     )
 
 
-def _whole() -> tuple[Variable, ...]:
-    return (
-        Variable(
-            "seed",
-            Role.PARAMETER,
-            "Seed of all noise",
-            start=1,
-            minimum=0,
-            maximum=2**31 - 1,
-            kind=Kind.INT32,
-        ),
-        Variable(
-            "noise",
-            Role.PARAMETER,
-            "false: every variance acts as zero",
-            start=1,
-            minimum=0,
-            maximum=1,
-            kind=Kind.BOOLEAN,
-        ),
-        Variable(
-            "integration",
-            Role.PARAMETER,
-            "How co-simulation moves the robot",
-            "Integration",
-            start=1,
-            minimum=1,
-            maximum=2,
-            kind=Kind.ENUMERATION,
-        ),
-        Variable(
-            "robots",
-            Role.ROBOTS,
-            "Number of robots in the fleet",
-            start=1,
-            minimum=1,
-            maximum=1e6,
-            kind=Kind.UINT64,
-        ),
-    )
-
+_WHOLE = tuple(VARIABLES[REFERENCE[name]] for name in ("seed", "noise", "integration", "robots"))
+"""As every robot of ours has them."""
 
 _TOLD = (
     Variable("time", Role.TIME, "Simulation time", "Duration"),
@@ -210,7 +171,7 @@ CAR = (
     _parameter(
         "steering_noise_variance", "Of the steering angle", "HeadingVariance", 1e-4, 0.0, 1e6
     ),
-    *_whole(),
+    *_WHOLE,
     _gain("drive_noise_gain", "Of the noise of drive and steering, from the next sample on"),
     _gain("measurement_noise_gain", "Of the measurement's noise, from the next sample on"),
 )
@@ -234,7 +195,7 @@ OMNI = (
     ),
     _parameter("first_wheel_error", "The same of the first wheel alone", "Ratio", 0.0, -0.9, 10.0),
     _parameter("wheel_noise_variance", "Of each wheel's speed", "SpeedVariance", 0.01, 0.0, 1e6),
-    *_whole(),
+    *_WHOLE,
     _gain("wheel_noise_gain", "Of the wheels' noise, from the next sample on"),
     _gain("measurement_noise_gain", "Of the measurement's noise, from the next sample on"),
 )

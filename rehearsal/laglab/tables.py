@@ -10,6 +10,11 @@ def terminal(stderr: bool = False) -> Console:
     return Console(stderr=stderr, markup=False, emoji=False)
 
 
+def say(text: str) -> None:
+    """A line on standard error."""
+    terminal(stderr=True).print(text, highlight=False, soft_wrap=True)
+
+
 def plain_table(*headings: str, title: str = "", caption: str = "", headed: bool = True) -> Table:
     """Without lines: title and caption at the left, headings, a row a line. Numbers are put at the
     right by who adds their columns."""

@@ -14,19 +14,19 @@ from fmpy.validation import validate_fmu
 from lxml import etree
 
 from laglab_fmu.contents import REFERENCE_LAYER, own_files
-from laglab_fmu.description import FMUS
+from laglab_fmu.models import ROBOT
 from laglab_fmu.variables import VARIABLES, Role
 
 ROOT = Path(__file__).parents[2]
 SCHEMAS = Path(str(files("fmpy"))) / "schema" / "fmi3"
 
 
-@pytest.mark.parametrize("name", FMUS)
+@pytest.mark.parametrize("name", ROBOT.fmus)
 def test_fmpy_finds_no_problem(fmus: dict[str, Path], name: str) -> None:
     assert validate_fmu(str(fmus[name])) == []
 
 
-@pytest.mark.parametrize("name", FMUS)
+@pytest.mark.parametrize("name", ROBOT.fmus)
 def test_the_manipulation_toolbox_finds_no_error_and_no_warning(
     fmus: dict[str, Path], name: str
 ) -> None:
@@ -40,7 +40,7 @@ def test_the_manipulation_toolbox_finds_no_error_and_no_warning(
     assert not any(level in said for level in ("ERROR", "WARNING", "CRITICAL"))
 
 
-@pytest.mark.parametrize("name", FMUS)
+@pytest.mark.parametrize("name", ROBOT.fmus)
 def test_every_variable_has_type_unit_and_display_unit(fmus: dict[str, Path], name: str) -> None:
     model = read_model_description(str(fmus[name]))
     for variable in model.modelVariables:
@@ -105,7 +105,7 @@ def test_there_is_an_icon(extracted: dict[str, Path], name: str, icon: str) -> N
     assert struct.unpack_from(">II", image, 16) == (100, 100)
 
 
-@pytest.mark.parametrize("name", FMUS)
+@pytest.mark.parametrize("name", ROBOT.fmus)
 def test_the_page_explains_every_variable(extracted: dict[str, Path], name: str) -> None:
     page = (extracted[name] / "documentation" / "index.html").read_text(encoding="utf-8")
     for variable in VARIABLES:
@@ -113,14 +113,14 @@ def test_the_page_explains_every_variable(extracted: dict[str, Path], name: str)
     etree.HTML(page)
 
 
-@pytest.mark.parametrize("name", FMUS)
+@pytest.mark.parametrize("name", ROBOT.fmus)
 def test_licences_are_inside(extracted: dict[str, Path], name: str) -> None:
     licences = extracted[name] / "documentation" / "licenses"
     assert (licences / "license.txt").read_text() == (ROOT / "LICENSE").read_text()
     assert "2-Clause BSD" in (licences / "fmi-headers.txt").read_text()
 
 
-@pytest.mark.parametrize("name", FMUS)
+@pytest.mark.parametrize("name", ROBOT.fmus)
 def test_reference_results_are_listed_and_current(extracted: dict[str, Path], name: str) -> None:
     """After a change that is meant to change them, run fmu/reference_results.py."""
     layer = extracted[name] / "extra" / REFERENCE_LAYER

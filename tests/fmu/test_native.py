@@ -13,7 +13,8 @@ from fmpy.util import create_cmake_project
 from laglab_fmu import BuildError, Robot, RobotParameters, c_compiler
 from laglab_fmu.compiler import FLAGS, compile_library, host_compiler, host_platform
 from laglab_fmu.contents import c_files, fmi_headers
-from laglab_fmu.description import FMUS, token
+from laglab_fmu.description import token
+from laglab_fmu.models import ROBOT
 from laglab_fmu.variables import MODEL_NAME
 
 HERE = Path(__file__).parent
@@ -99,7 +100,7 @@ def test_a_c_host_without_libm_gets_the_same_bits(
     assert lines == [reading[:3], reading[:3]]
 
 
-@pytest.mark.parametrize("name", FMUS)
+@pytest.mark.parametrize("name", ROBOT.fmus)
 def test_a_third_party_compiles_what_is_inside(
     extracted: dict[str, Path], tmp_path: Path, name: str
 ) -> None:
@@ -125,7 +126,7 @@ def test_a_third_party_compiles_what_is_inside(
 @pytest.mark.skipif(
     not (host_compiler() and shutil.which("make")), reason="cmake brings neither compiler nor make"
 )
-@pytest.mark.parametrize("name", FMUS)
+@pytest.mark.parametrize("name", ROBOT.fmus)
 def test_fmpy_s_cmake_project_compiles_and_packs_it_again(
     fmus: dict[str, Path], tmp_path: Path, name: str
 ) -> None:

@@ -196,6 +196,9 @@ def test_files_that_are_none(tmp_path: Path, fmus: Path, library: Path) -> None:
         archive.writestr("readme.txt", "nothing")
     with pytest.raises(FmuFileError, match=r"no modelDescription.xml is in it"):
         FmuFile.read(tmp_path / "empty.fmu")
+    with zipfile.ZipFile(rover(tmp_path / "dotted.fmu", library), "a") as archive:
+        archive.writestr("./", "")
+    assert FmuFile.read(tmp_path / "dotted.fmu").version == 2
     elsewhere = FmuFile.read(rover(tmp_path / "away.fmu", library, platform="win32"))
     with pytest.raises(FmuFileError, match=r"no binary for this machine .*, but: win32"):
         elsewhere.interface()

@@ -12,6 +12,7 @@ import pytest
 
 from laglab.command import main
 from laglab.runs import rehearse
+from laglab.runs.station_side import check_parts
 from laglab.runs.waiting import in_time
 from laglab.scenario import load
 from laglab.studies.sweep.study import Study
@@ -527,3 +528,20 @@ def test_a_side_that_does_not_start_is_named(
     ending = rehearse.rehearse_apart(load("lab", {}), "udp", tmp_path)
     assert ending.problem == "the robot's side did not start within -1 s: robot"
     assert ending.exit_code == 2
+
+
+def test_a_filter_that_shadows_itself_keeps_its_options(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(tmp_path)
+    (tmp_path / "needy.py").write_text(
+        "from laglab_control import Backdated\n\n\n"
+        "class Needy(Backdated):\n"
+        "    def __init__(self, model, needed):\n        super().__init__(model)\n\n"
+        "    def forward(self, x, P, u):\n        return self.model.predict(x, P, u)\n\n"
+        "    def corrected(self, x, P, z):\n        return x, P\n"
+    )
+    told = {"estimator.kind": "needy:Needy", "estimator.options": {"needed": 1}}
+    check_parts(load("lab", told | {"estimator.compare": ["needy:Needy", "ekf"]}))
+    with pytest.raises(PluginError, match="cannot be made"):
+        check_parts(load("lab", {"estimator.compare": ["needy:Needy"]}))

@@ -1,17 +1,18 @@
 """`laglab check`: what ships keeps its interface, and each way to break it fails one row."""
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import pytest
 
-from laglab.check import CheckOrder, checked, checked_apart
-from laglab.check.finding import all_hold
+from laglab.check import CheckOrder, checked, checked_apart, law
+from laglab.check.finding import NotSoError, all_hold
 from laglab.check.subject import Kind, kind_of
 from laglab.command import main
 from laglab.errors import LaglabError, ScenarioError
 from laglab.scenario.tables.plant import SHIPPED as PLANTS
-from laglab_control import ESTIMATORS, LAWS, PluginError
+from laglab_control import ESTIMATORS, LAWS, Demand, PluginError, PolarLaw
 
 BROKEN = '''
 """Each is right but for one thing."""
@@ -351,7 +352,6 @@ def test_a_filter_that_is_too_slow_for_its_ticks(
 ) -> None:
     monkeypatch.chdir(broken)
     from laglab.check import estimator
-    from laglab.check.finding import NotSoError
     from laglab_control.estimators.family import estimator_kind
 
     slow = estimator_kind("broken_parts:Slow").make(estimator.MODEL)
@@ -420,9 +420,23 @@ def test_what_cannot_be_checked_is_one_line(
 def test_options_that_it_does_not_have_fail_its_first_row(
     laglab_check: Callable[..., tuple[int, str, str]],
 ) -> None:
-    code, out, _ = laglab_check("broken_parts:RightLaw", "--option", "gain=2")
-    assert code == 1
-    assert "cannot be made: TypeError" in " ".join(out.split())
+    for name, said in (
+        ("broken_parts:RightLaw", "cannot be made: TypeError"),
+        ("polar", "polar has none, so leave gain out"),
+    ):
+        code, out, _ = laglab_check(name, "--option", "gain=2")
+        assert code == 1
+        assert said in " ".join(out.split())
+
+
+def test_speeds_that_are_not_finite_are_found() -> None:
+    class Lost(PolarLaw):
+        def drive(self, pose: Iterable[float], time: float, memory: object) -> Demand:
+            far = math.hypot(*list(pose)[:2]) > 500 and time > 1
+            return Demand(math.nan if far else 0.1, 0.0, memory)
+
+    with pytest.raises(NotSoError, match="v = nan"):
+        law.finite(Lost())
 
 
 def test_the_kind_is_known_by_name_or_methods(

@@ -140,8 +140,8 @@ def test_the_fitted_link_does_what_was_measured() -> None:
 def test_a_poor_fit_is_told() -> None:
     drift = 0.02 + 0.02 * np.arange(900.0) / 900  # one slow rise: no stationary link does that
     found = fit(MeasuredLink(Flow(TS * np.arange(900.0), drift, 9), NONE, TS), 0.01)
-    assert ("a poor one" in " ".join(suggestions(found))) == (max(found.distances) > 0.1)
-    assert max(found.distances) > 0.03
+    assert max(found.distances) > 0.15
+    assert "a poor one" in " ".join(suggestions(found))
     assert "a poor one" not in " ".join(suggestions(fit(MEASURED, 0.01)))
 
 
@@ -173,21 +173,11 @@ def test_the_distance_of_two_samples() -> None:
 
 
 def test_a_link_as_a_file_reads_back(tmp_path: Path) -> None:
-    text = link_toml(FittedLink(3, 4, UP, DOWN), ["of a link"])
-    (tmp_path / "link.toml").write_text(text)
+    (tmp_path / "link.toml").write_text(link_toml(FittedLink(3, 4, UP, DOWN, Bounds(5, 6))))
     link = load(str(tmp_path / "link.toml")).link
     assert (link.command_delay, link.measurement_delay) == (3, 4)
     assert (link.command, link.measurement) == (UP, DOWN)
-    assert text.startswith("# of a link\n")
-
-
-def test_play_out_stands_in_the_file_where_scenarios_know_it(tmp_path: Path) -> None:
-    from laglab.scenario.tables.link import LinkTable
-
-    text = link_toml(FittedLink(3, 4, playout=Bounds(5, 6)))
-    (tmp_path / "link.toml").write_text(text)
-    assert ("playout" in text) == ("playout" in LinkTable.model_fields)
-    load(str(tmp_path / "link.toml"))
+    assert (link.playout.command, link.playout.measurement) == (5, 6)
 
 
 def test_fitted_rehearsed_and_replayed(said: Said, tmp_path: Path) -> None:
@@ -207,6 +197,14 @@ def test_fitted_rehearsed_and_replayed(said: Said, tmp_path: Path) -> None:
     said("run", "lab", *inline, "--timeline", "link.csv", "-n", "0", "-m", "0", "--out", "again")
     again = read_measured(tmp_path / "again" / "link.csv", TS)
     np.testing.assert_array_equal(again.command.delay, MEASURED.command.delay[:101].round(7))
+
+
+def test_ticks_are_as_long_as_the_measurements(said: Said, tmp_path: Path) -> None:
+    flow = Flow(0.04 * np.arange(50.0), np.full(50, 0.08), 100)
+    write_link_log(MeasuredLink(flow, flow, 0.04), tmp_path / "link.csv")
+    said("link", "fit", "--interval", "0.04")
+    fitted = load(str(tmp_path / "link.toml"))
+    assert fitted.link.command_delay * fitted.sample_time == pytest.approx(0.08)
 
 
 @pytest.mark.parametrize(

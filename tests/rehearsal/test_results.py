@@ -128,3 +128,11 @@ def test_scenarios_lists_all_that_ship(laglab: Laglab) -> None:
     listed = laglab("scenarios").stdout
     for name in ("fig4", "fig5", "fig6", "fig7", "fig8", "lab"):
         assert name in listed
+
+
+def test_a_report_is_left_where_one_is_asked_for(laglab: Laglab, tmp_path: Path) -> None:
+    short = ("run", "fig4", "--transport", "inline", "--duration", "0.5", "--out", "run")
+    result = laglab(*short, "--report")
+    assert result.returncode == 0, result.stderr
+    assert "report in run/report.html" in result.stdout
+    assert "fig4" in (tmp_path / "run" / "report.html").read_text("utf-8")

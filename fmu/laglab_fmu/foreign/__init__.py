@@ -6,6 +6,6 @@
 
 from laglab_fmu.foreign.file import FmuFile
 from laglab_fmu.foreign.robot import ForeignRobot
-from laglab_fmu.foreign.wiring import Value, Wiring, check
+from laglab_fmu.foreign.wiring import REAL, Value, Wiring, check, size
 
-__all__ = ["FmuFile", "ForeignRobot", "Value", "Wiring", "check"]
+__all__ = ["REAL", "FmuFile", "ForeignRobot", "Value", "Wiring", "check", "size"]

@@ -50,7 +50,7 @@ class FmuFile:
         if description.fmiVersion == "1.0":
             raise FmuFileError(f"{path} is of FMI 1.0: export it again as FMI 2 or 3")
         folders = {place.parts[1] for place in places if _is_binary(place)}
-        sources = any(place.parts[0] == SOURCES and place.suffix == ".c" for place in places)
+        sources = any(place.parts[:1] == (SOURCES,) and place.suffix == ".c" for place in places)
         return cls(path, description, tuple(sorted(folders)), sources, invalid)
 
     @property

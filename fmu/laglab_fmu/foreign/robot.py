@@ -48,23 +48,21 @@ class ForeignRobot:
         self._file, self._wiring, self._sample_time = file, wiring, sample_time
         self._substeps = substeps(file, sample_time)
         self.log = Log()
-        self._tick, self._runs = 0, False
-        self._told: Sequence[float] = ()
+        self._runs = False
         with ExitStack() as stack:
             self._fmu: Any = stack.enter_context(instance(file, self.log))
             elements = output_elements(file, wiring.outputs)
             self._names = [element.name for element in elements]
             self._reader = Reader(self._fmu, file.version, elements)
             self._writer = Writer(self._fmu, file.version, input_elements(file, wiring.inputs))
-            self._numbers: Sequence[float] = ()
             self._begin(start)
             self._stack = stack.pop_all()
 
     def _begin(self, start: Sequence[float]) -> None:
         elements = start_elements(self._file, self._wiring.start)
         values = {**self._wiring.parameters, **starting(elements, start)}
-        self._tick, self._numbers = 0, ()
-        self._told = ()
+        self._tick = 0
+        self._told: Sequence[float] = ()
         try:
             initialize(self._file, self._fmu, values)
             self._integrator = None
@@ -83,15 +81,14 @@ class ForeignRobot:
             CallError: the FMU failed; names the call and the variables.
         """
         time = self._tick * self._sample_time
-        self._told = inputs
+        before, self._told = self._told, inputs
         try:
             if self._integrator is None:
                 self._writer.write(inputs)
                 self._step(time)
             else:
-                new = None if inputs == self._numbers else partial(self._writer.write, inputs)
+                new = None if inputs == before else partial(self._writer.write, inputs)
                 self._integrator.step(time, (self._tick + 1) * self._sample_time, new)
-            self._numbers = inputs
             self._tick += 1
             self.outputs = self._read()
         except (FMICallException, CallError) as error:

@@ -89,8 +89,8 @@ class Measurement(Message, frozen=True):
 
 
 class Command(Message, frozen=True):
-    """Station: the command for `tick` [m/s, rad/s]; so many other frames precede it, and it plans
-    for so many ticks more."""
+    """Station: the command for `tick` [m/s, rad/s]; so many estimates and recalls precede
+    it, and it plans for so many ticks more."""
 
     v: float
     omega: float

@@ -158,15 +158,19 @@ class Codec:
 
 
 def refuse_open_door(
-    endpoint: Endpoint, key_file: Path | None, unsigned_allowed: bool, option: str = "--key"
+    endpoint: Endpoint,
+    key_file: Path | None,
+    unsigned_allowed: bool,
+    option: str = "--key",
+    harm: str = "move the robot",
 ) -> None:
     """Raise UnsignedLinkError when strangers can reach `endpoint` and no key keeps them out.
 
-    `option` is where that key is given.
+    `option` is where that key is given, `harm` what they could do.
     """
     if not (endpoint.loopback or key_file or unsigned_allowed):
         raise UnsignedLinkError(
             f"{endpoint.name} can be reached from outside, and without a key anybody there can "
-            f"move the robot: give {option} FILE (laglab protocol keygen makes one), or say "
+            f"{harm}: give {option} FILE (laglab protocol keygen makes one), or say "
             "--unsigned"
         )

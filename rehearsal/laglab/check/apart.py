@@ -61,7 +61,8 @@ def checked_apart(order: CheckOrder, patience: float = PATIENCE) -> Checked:
         found: list[Finding] = []
         while (finding := _next(inbox, patience)) is not None:
             if isinstance(finding, Stuck):
-                found.append(Finding(ROWS[kind][len(found)], "no", finding.why))
+                row = dict(enumerate(ROWS[kind])).get(len(found), "end")
+                found.append(Finding(row, "no", finding.why))
                 break
             found.append(finding)
     return Checked(kind, found)

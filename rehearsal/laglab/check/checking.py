@@ -8,8 +8,9 @@ from laglab.check import estimator, law, plant
 from laglab.check.finding import Finding, findings
 from laglab.check.subject import KINDS, SHIPPED, Kind, maker_of
 from laglab.runs.plant import open_plant
+from laglab.runs.plant.brought import METHODS
 from laglab.scenario import Scenario, changed
-from laglab_control import ESTIMATORS, Circle, Law, PluginFailedError, PolarLaw
+from laglab_control import ESTIMATORS, Circle, ConfigError, Law, PluginFailedError, PolarLaw
 from laglab_control.estimators.family import estimator_kind
 from laglab_control.laws import brought_law, tracking_law
 from laglab_control.plugins import called, find_plugin, made, refuse_misfit, shown
@@ -59,6 +60,8 @@ def _estimator(name: str, options: dict[str, object]) -> Iterator[Finding]:
 
 def _law(name: str, options: dict[str, object]) -> Law:
     if name == "polar":
+        if options:
+            raise ConfigError(f"law.options: polar has none, so leave {', '.join(options)} out")
         return PolarLaw(law.GOAL)
     if name == "tracking":
         return tracking_law(Circle(law.GOAL[:2], 1.0, 0.5), options)
@@ -96,14 +99,11 @@ def _plant(name: str, options: dict[str, object]) -> plant.Subject:
 
     def make() -> Plant:
         one = made(name, maker, plant.SAMPLE_TIME, plant.START, plant.SEED, **options)
-        for method, parameters in PLANT.items():
+        for method, parameters in METHODS.items():
             refuse_misfit(name, one, method, *parameters)
         return Watched(name, one)
 
     return plant.Subject(make)
-
-
-PLANT = {"read": (), "step": ("v", "omega"), "place": ("x", "y", "theta")}
 
 
 class Watched(Plant):

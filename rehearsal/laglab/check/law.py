@@ -1,5 +1,6 @@
 """What a law must keep: `laglab_control.Law`, a row each."""
 
+import math
 from collections.abc import Iterator, Mapping
 
 import numpy as np
@@ -33,7 +34,8 @@ def finite(law: Law) -> str:
     """Finite speeds wherever the robot is, at the goal too."""
     for time in (0.0, 0.1, 1e4):
         for pose in _poses():
-            law.drive(pose, time, None)
+            v, omega, _ = law.drive(pose, time, None)
+            need(math.isfinite(v) and math.isfinite(omega), f"v = {v}, ω = {omega} at {pose}")
     return "all over the plane, and at the goal itself"
 
 

@@ -42,10 +42,10 @@ def drive(model: RobotModel, ticks: int, seed: int, noise: bool = True) -> Recor
     inputs = np.stack((0.5 + 0.2 * np.sin(time), 0.8 * np.sin(0.7 * time + seed)), axis=1)
     poses = np.empty((ticks + 1, 3))
     poses[0] = random.uniform(-1, 1, 3)
-    r, half = model.wheel_radius, model.track / 2
+    r, track = model.wheel_radius, model.track
     wheels = scale * random.standard_normal((ticks, 2)) * np.sqrt(np.diag(model.Q))
     for k, (u, (left, right)) in enumerate(zip(inputs, wheels, strict=True)):
-        slipping = u + np.array((r * (left + right) / 2, r * (right - left) / (2 * half)))
+        slipping = u + np.array((r * (left + right) / 2, r * (right - left) / track))
         poses[k + 1] = model.f(poses[k], slipping)
     sensed = scale * random.standard_normal((ticks + 1, 3)) * np.sqrt(np.diag(model.R))
     off = scale * random.standard_normal(3) * np.sqrt(P_0)

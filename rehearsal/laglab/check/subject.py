@@ -1,11 +1,14 @@
 """What is to be checked: found by its name, and known by its methods."""
 
 from collections.abc import Iterator, Mapping
+from importlib.metadata import entry_points
 from typing import Literal
 
 from laglab.errors import ScenarioError
+from laglab.runs.plant.brought import METHODS as OF_PLANTS
 from laglab.scenario.tables.plant import SHIPPED as PLANTS
-from laglab_control import ESTIMATORS, LAWS, PluginError, find_plugin, is_module_class
+from laglab_control import ESTIMATORS, LAWS, find_plugin, is_module_class
+from laglab_control.estimators.brought import METHODS as OF_ESTIMATORS
 from laglab_control.plugins import Group, Maker, installed_plugins
 
 Kind = Literal["estimator", "law", "plant"]
@@ -15,9 +18,9 @@ KINDS: Mapping[Kind, Group] = {
     "plant": "laglab.plants",
 }
 METHODS: Mapping[Kind, tuple[str, ...]] = {
-    "estimator": ("start", "predict", "correct"),
+    "estimator": tuple(OF_ESTIMATORS),
     "law": ("drive",),
-    "plant": ("read", "step", "place"),
+    "plant": tuple(OF_PLANTS),
 }
 SHIPPED: Mapping[Kind, tuple[str, ...]] = {
     "estimator": tuple(ESTIMATORS),
@@ -56,15 +59,7 @@ def _by_name(name: str) -> Iterator[Kind]:
     if is_module_class(name):
         return
     for kind, group in KINDS.items():
-        if name in SHIPPED[kind]:
-            yield kind
-            continue
-        try:
-            find_plugin(group, name)
-        except PluginError as error:
-            if not str(error).startswith("no "):
-                raise
-        else:
+        if name in SHIPPED[kind] or name in entry_points(group=group).names:
             yield kind
 
 

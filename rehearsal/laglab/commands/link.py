@@ -27,7 +27,7 @@ from laglab.results.whole import whole_file
 from laglab.results.writable import file_place
 from laglab.runs.station_side import station_config
 from laglab.scenario import load
-from laglab.tables import terminal
+from laglab.tables import say, terminal
 from laglab_control import PolarLaw, delay_margin
 from laglab_gateway import Impairments
 from laglab_protocol import (
@@ -39,8 +39,8 @@ from laglab_protocol import (
     Codec,
     Listener,
     Sender,
-    UnsignedLinkError,
     open_endpoint,
+    refuse_open_door,
 )
 
 app = group("The link you have: measured, imported, fitted.")
@@ -67,10 +67,6 @@ ClocksOption = Annotated[
 ]
 
 
-def _say(text: str) -> None:
-    terminal(stderr=True).print(text, highlight=False, soft_wrap=True)
-
-
 @app.command("echo")
 def echo(
     url: UrlArgument = "udpin://127.0.0.1:14550",
@@ -84,14 +80,9 @@ def echo(
     At the robot's end, until Ctrl-C.
     """
     with Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, key) as codec, open_endpoint(url) as link:
-        if not (link.loopback or key or unsigned):
-            raise UnsignedLinkError(
-                f"{link.name} can be reached from outside, and without a key anybody there can "
-                "have frames sent to others: give --key FILE (laglab protocol keygen makes one), "
-                "or say --unsigned"
-            )
-        _say(f"at {link.name}: waiting for `laglab link probe`; Ctrl-C ends it")
-        answer(Listener(link, codec.receiver), codec, _say)
+        refuse_open_door(link, key, unsigned, harm="have frames sent to others")
+        say(f"at {link.name}: waiting for `laglab link probe`; Ctrl-C ends it")
+        answer(Listener(link, codec.receiver), codec, say)
 
 
 @app.command("probe")
@@ -128,7 +119,7 @@ def probe(
         counting("frame", link.name, count) as told,
     ):
         measured = measure(
-            Listener(link, codec.receiver), codec, plan, lambda prober: told(prober.sent), _say
+            Listener(link, codec.receiver), codec, plan, lambda prober: told(prober.sent), say
         )
     write_link_log(measured, out)
     print_measured(measured, terminal())
@@ -238,7 +229,7 @@ def fit(
         require(DRAWING)
         picture_place(figure, "--figure")
     file_place("--out", out)
-    on = load(scenario)
+    on = load(scenario, {"sample_time": interval})
     found = fit_link(read_measured(file, interval, (n, m)), late)
     fitted = scenario_toml(on, found.link)
     with whole_file(out) as written:

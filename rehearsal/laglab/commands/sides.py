@@ -31,7 +31,7 @@ from laglab.runs.glance import Told, watched
 from laglab.runs.robot_side import Setup, open_robot, wrapped_replay
 from laglab.runs.station_side import open_station
 from laglab.scenario import Scenario
-from laglab.tables import terminal
+from laglab.tables import say
 from laglab_gateway import FileRecorder, Patience, Surroundings
 from laglab_protocol import Endpoint, Listener, open_endpoint, refuse_open_door
 
@@ -47,23 +47,19 @@ UnsignedOption = Annotated[
 ]
 
 
-def _say(text: str) -> None:
-    terminal(stderr=True).print(text, highlight=False, soft_wrap=True)
-
-
 def _warn(text: str) -> None:
-    _say(f"warning: {text}")
+    say(f"warning: {text}")
 
 
 def _say_whom_we_wait_for(other: str, link: Endpoint) -> None:
     """And what it is to do: two that both listen, or both call, never meet."""
     match link.name.partition(":")[0]:
         case "udpin":
-            _say(f"listening on {link.name}: waiting for {other}, which calls there (udpout)")
+            say(f"listening on {link.name}: waiting for {other}, which calls there (udpout)")
         case "udpout":
-            _say(f"calling {link.name}: waiting for {other}, which listens there (udpin)")
+            say(f"calling {link.name}: waiting for {other}, which listens there (udpin)")
         case _:
-            _say(f"at {link.name}: waiting for {other}")
+            say(f"at {link.name}: waiting for {other}")
 
 
 @on_scenario
@@ -106,10 +102,10 @@ def gateway(
         page = stack.enter_context(shown_live(scenario, way, live, open_))
         directory = place(scenario, out, force)
         if said := wrapped_replay(scenario):
-            _say(said)
+            say(said)
         _say_whom_we_wait_for("the controller", link)
         for each in watchers:
-            _say(f"a ground station may look on at {each.name}")
+            say(f"a ground station may look on at {each.name}")
         line = page.line if page else None
         with (
             progress_of(scenario) as told,

@@ -54,11 +54,12 @@ def _tell(page: LivePage | None, verdict: str) -> None:
 
 def report_on(run: Run) -> None:
     """Leave a report beside the run's other files. Needs bokeh."""
+    from laglab.results.report import save_report
 
     if run.directory:
-        terminal().print(
-            f"report in {run.directory / REPORT_FILE}", highlight=False, soft_wrap=True
-        )
+        place = run.directory / REPORT_FILE
+        save_report([run], place)
+        terminal().print(f"report in {place}", highlight=False, soft_wrap=True)
 
 
 def _show(run: Run) -> None:

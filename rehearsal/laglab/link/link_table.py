@@ -1,16 +1,14 @@
 """A `[link]` table: a scenario file, or the end of one."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from typing import NamedTuple
 
 import tomlkit
 from tomlkit.items import InlineTable, Item, Table
 
-from laglab.scenario.tables.link import LinkTable
 from laglab_gateway import IDEAL, Impairments
 
-PLAYOUT = "playout"
 DIGITS = 6
 """Of a number."""
 
@@ -37,19 +35,17 @@ def link_table(link: FittedLink) -> Table:
     table = tomlkit.table()
     table["command_delay"] = link.command_delay
     table["measurement_delay"] = link.measurement_delay
-    if link.playout is not None and PLAYOUT in LinkTable.model_fields:
-        table[PLAYOUT] = _inline(link.playout._asdict())
+    if link.playout is not None:
+        table["playout"] = _inline(link.playout._asdict())
     for name in ("command", "measurement"):
         if (impairments := getattr(link, name)) != IDEAL:
             table[name] = _table(impairments)
     return table
 
 
-def link_toml(link: FittedLink, said: Sequence[str] = ()) -> str:
-    """The same as a file, after these comments."""
+def link_toml(link: FittedLink) -> str:
+    """The same as a file."""
     document = tomlkit.document()
-    for line in said:
-        document.add(tomlkit.comment(line))
     document["link"] = link_table(link)
     return tomlkit.dumps(document)
 

@@ -17,10 +17,10 @@ NONE = "-"
 NOT_FITTED = ("frames", "size [byte]")
 
 
-def table_of(measured: MeasuredLink, title: str = "") -> Table:
+def table_of(measured: MeasuredLink) -> Table:
     """A column each way: frames, losses, order, and the delays' quantiles."""
     seconds = measured.interval * max(len(flow.delay) for _, flow in measured.flows)
-    heading = title or f"A frame each way every {1e3 * measured.interval:g} ms, {seconds:.3g} s"
+    heading = f"A frame each way every {1e3 * measured.interval:g} ms, {seconds:.3g} s"
     table = plain_table("", title=heading)
     for direction, _ in measured.flows:
         table.add_column(f"{direction}s", justify="right")
@@ -30,9 +30,9 @@ def table_of(measured: MeasuredLink, title: str = "") -> Table:
     return table
 
 
-def print_measured(measured: MeasuredLink, console: Console, title: str = "") -> None:
+def print_measured(measured: MeasuredLink, console: Console) -> None:
     """The table, and what is to be said of the figures."""
-    console.print(table_of(measured, title))
+    console.print(table_of(measured))
     for note in measured.notes:
         console.print(note, highlight=False, markup=False)
 

@@ -5,9 +5,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from laglab_fmu.foreign import FmuFile
+from laglab_fmu.foreign import REAL, FmuFile, size
 
-REAL = ("Real", "Float64", "Float32")
 Words = frozenset[str]
 LEFT, RIGHT = Words({"left", "l", "links"}), Words({"right", "r", "rechts"})
 TURNING = Words(
@@ -91,10 +90,7 @@ def candidates(file: FmuFile) -> Iterator[Candidate]:
         if not variable.shape:
             yield Candidate(variable.name, *told)
             continue
-        count = 1
-        for length in variable.shape:
-            count *= length
-        for i in range(count):
+        for i in range(size(variable)):
             yield Candidate(f"{variable.name}[{i}]", *told)
 
 

@@ -13,9 +13,9 @@ from laglab.errors import NoRunError
 from laglab.results.numbers import AXES, RmsError, deviation
 from laglab.results.summary import Errors
 from laglab.results.whole import whole_file
-from laglab.runs.station_side import station_config
-from laglab.scenario import Scenario, changed
-from laglab_control import PluginFailedError, without_blind_guard
+from laglab.runs.station_side import shadow_config
+from laglab.scenario import Scenario
+from laglab_control import PluginFailedError
 from laglab_gateway import Trace, format_row
 from laglab_station import SessionTick, ShadowRow, shadow
 
@@ -43,10 +43,7 @@ def shadow_rows(
 
     Raises: ScenarioError, when there is no such estimator.
     """
-    own = scenario.estimator.kind == name
-    told = {} if own else {"estimator.kind": name, "estimator.options": {}}
-    config = without_blind_guard(station_config(changed(scenario, told)))
-    return shadow(config, session, scenario.link.playout.measurement)
+    return shadow(shadow_config(scenario, name), session, scenario.link.playout.measurement)
 
 
 def until_it_fails(rows: Iterable[ShadowRow], fail: Callable[[str], None]) -> Iterator[ShadowRow]:

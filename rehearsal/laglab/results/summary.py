@@ -59,7 +59,8 @@ class Summary(Struct, frozen=True, kw_only=True):
     transport: str
     """What was between the sides."""
     plant: str
-    """`fmu`, or the address of the real robot; of a station alone, unknown."""
+    """The robot's kind or its FMU's file, or the address of the real one; of a station alone,
+    unknown."""
     estimator: str
     law: str
     n: int

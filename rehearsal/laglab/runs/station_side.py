@@ -4,14 +4,21 @@ import math
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from laglab.scenario import Scenario
-from laglab_control import Controller, Law, PolarLaw, RobotModel, SpeedLimits, StationConfig
+from laglab.scenario import Scenario, changed
+from laglab_control import (
+    Controller,
+    Law,
+    PolarLaw,
+    RobotModel,
+    SpeedLimits,
+    StationConfig,
+    without_blind_guard,
+)
 from laglab_control.laws import brought_law, tracking_law
 from laglab_protocol import STATION_COMPONENT, STATION_SYSTEM, Codec, Receiver, Sender, Settings
 from laglab_station import Station
@@ -45,10 +52,20 @@ def check_parts(scenario: Scenario) -> None:
 
     Raises PluginError or ConfigError.
     """
-    config = station_config(scenario)
-    Controller(config).start()
+    Controller(station_config(scenario)).start()
     for name in scenario.estimator.compare:
-        Controller(replace(config, estimator=name, estimator_options={}, guard=False)).start()
+        Controller(shadow_config(scenario, name)).start()
+
+
+def shadow_config(scenario: Scenario, name: str) -> StationConfig:
+    """The station's side with another estimator, which looks on: with no options of its own,
+    unless it is the one in the loop; unguarded where a guard would see nothing.
+
+    Raises ScenarioError, PluginError or ConfigError when there is none, or it cannot be made.
+    """
+    own = scenario.estimator.kind == name
+    told: dict[str, object] = {"estimator.kind": name, "estimator.options": {}}
+    return without_blind_guard(station_config(scenario if own else changed(scenario, told)))
 
 
 def station_config(scenario: Scenario) -> StationConfig:
