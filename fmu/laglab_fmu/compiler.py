@@ -17,7 +17,7 @@ from pathlib import Path
 from laglab_fmu.errors import BuildError, CompilerNotFoundError
 
 FLAGS = (
-    *("-std=c99", "-O2", "-ffp-contract=off", "-fvisibility=hidden"),
+    *("-std=c99", "-O3", "-ffp-contract=off", "-fvisibility=hidden"),
     *("-Wall", "-Wextra", "-Wpedantic", "-Werror"),
 )
 REPRODUCIBLE = ("-g0", "-s")

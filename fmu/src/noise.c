@@ -10,7 +10,13 @@ enum { ROUNDS = 10 };
 static const uint64_t MULTIPLIER[2] = {0xD2E7470EE14C6C93, 0xCA5A826395121157};
 static const uint64_t WEYL[2] = {0x9E3779B97F4A7C15, 0xBB67AE8584CAA73B};
 
-/* High 64 bits of a 64 x 64 bit product, out of 32 x 32 bit products: C99 has no wider type. */
+/* High 64 bits of a 64 x 64 bit product. */
+#ifdef __SIZEOF_INT128__
+static uint64_t multiply_high(uint64_t a, uint64_t b) {
+    return (uint64_t)((__extension__(unsigned __int128) a * b) >> 64);
+}
+#else
+/* Out of 32 x 32 bit products: C99 has no wider type. */
 static uint64_t multiply_high(uint64_t a, uint64_t b) {
     const uint64_t mask = 0xFFFFFFFF;
     const uint64_t low = (a & mask) * (b & mask);
@@ -18,6 +24,7 @@ static uint64_t multiply_high(uint64_t a, uint64_t b) {
     const uint64_t other = (a & mask) * (b >> 32) + (cross & mask);
     return (a >> 32) * (b >> 32) + (cross >> 32) + (other >> 32);
 }
+#endif
 
 void noise_words(uint64_t seed, uint64_t sample, uint64_t stream, uint64_t words[4]) {
     uint64_t a = sample, b = stream, c = 0, d = 0;

@@ -19,12 +19,12 @@ WORD = st.integers(0, 2**64 - 1)
 SAMPLES = 20_000
 
 
-@pytest.fixture(scope="session")
-def noise(tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
-    """noise.c alone, as a library."""
+@pytest.fixture(scope="session", params=["-DLAGLAB", "-U__SIZEOF_INT128__"])
+def noise(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> ctypes.CDLL:
+    """noise.c alone, as a library; also as by a compiler that has no 128 bits."""
     library = tmp_path_factory.mktemp("noise") / f"noise{host_platform().suffix}"
     source = own_files("src") / "noise.c"
-    command = [*c_compiler(), *FLAGS, "-fvisibility=default", "-shared", "-fPIC"]
+    command = [*c_compiler(), *FLAGS, "-fvisibility=default", "-shared", "-fPIC", request.param]
     subprocess.run([*command, "-o", str(library), str(source), "-lm"], check=True)
     loaded = ctypes.CDLL(str(library))
     for name in ("noise_log", "noise_quantile"):

@@ -12,7 +12,7 @@ from laglab.results.nees import nees
 from laglab.results.target import Target
 from laglab.studies.sweep.cell import Cell
 from laglab.studies.sweep.compute import computed
-from laglab.studies.sweep.judged import Record, judgements
+from laglab.studies.sweep.judged import Judge, Stretch, judgements
 from laglab.studies.sweep.loading import load_study
 from laglab.studies.sweep.ways import how
 
@@ -109,12 +109,16 @@ def test_nees_is_that_of_the_textbook() -> None:
     assert nees(e, P) == pytest.approx(expected, rel=1e-8, nan_ok=True)
 
 
-def at(*distances: float) -> Record:
+ON = np.array([np.nan])
+"""It did not diverge."""
+
+
+def at(*distances: float) -> Stretch:
     """A robot on the x axis, at one tick after the other."""
     truth = np.zeros((1, len(distances), 3))
     truth[0, :, 0] = distances
     applied = np.zeros((1, len(distances), 2))
-    return Record(truth, None, None, applied, np.array([np.nan]))
+    return Stretch(truth, None, None, applied)
 
 
 @pytest.mark.parametrize(
@@ -129,7 +133,7 @@ def at(*distances: float) -> Record:
 def test_it_has_settled_when_it_does_not_leave_any_more(
     distances: tuple[float, ...], settled: float, converged: bool
 ) -> None:
-    judged = judgements(at(*distances), Target(HERE, None, 0.5), 0)
+    judged = judgements(at(*distances), ON, Target(HERE, None, 0.5), 0)
     assert judged.settled_s == pytest.approx([settled], nan_ok=True)
     assert judged.converged.tolist() == [converged]
 
@@ -138,18 +142,22 @@ def test_many_robots_at_once_are_judged_as_each_alone() -> None:
     rng = np.random.default_rng(2)
     truth = rng.normal(size=(30, 50, 3)).cumsum(axis=1) / 100
     estimates = truth + rng.normal(size=truth.shape) / 10
-    claimed = np.broadcast_to(np.eye(3) / 100, (30, 50, 3, 3)).copy()
+    claimed = np.tile([0.01, 0, 0, 0.01, 0, 0.01], (30, 50, 1))
     diverged = np.where(np.arange(30) % 7 == 3, 20.0, np.nan)
     applied = rng.normal(size=(30, 50, 2))
     for each in (truth, estimates, claimed, applied):
         each[~np.isnan(diverged), 21:] = np.nan
-    record = Record(truth, estimates, claimed, applied, diverged)
-    together = judgements(record, Target(HERE, None, 0.02), 5)
+    target = Target(HERE, None, 0.02)
+    record = Stretch(truth, estimates, claimed, applied)
+    together = judgements(record, diverged, target, 5)
+    piece_by_piece = Judge(target, 5, 30)
+    for first in range(0, 50, 3):
+        piece_by_piece.add(Stretch(*(each[:, first : first + 3] for each in record)))
+    for pieces, whole in zip(piece_by_piece.judgements(diverged), together, strict=True):
+        assert pieces == pytest.approx(whole, rel=1e-12, nan_ok=True)
     for robot in range(30):
         ticks = 21 if diverged[robot] == 20 else 50
-        alone = Record(
-            *(each[robot : robot + 1, :ticks] for each in record[:4]),
-            diverged[robot : robot + 1],
-        )
-        for one, all_ in zip(judgements(alone, Target(HERE, None, 0.02), 5), together, strict=True):
+        alone = Stretch(*(each[robot : robot + 1, :ticks] for each in record))
+        judged = judgements(alone, diverged[robot : robot + 1], target, 5)
+        for one, all_ in zip(judged, together, strict=True):
             assert one[0] == pytest.approx(all_[robot], rel=1e-12, nan_ok=True)

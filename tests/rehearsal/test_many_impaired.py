@@ -10,8 +10,10 @@ import laglab
 from laglab.results.numbers import has_converged
 from laglab.runs.inline import InlineLink
 from laglab.scenario import load
-from laglab.studies.many import Many, run_many, why_one_by_one
+from laglab.studies.many import run_many, why_one_by_one
 from laglab.studies.schedule import schedule_of
+
+from .many_kept import furthest, kept
 
 SHARP = 1e-9
 COLUMNS = ["x", "y", "theta", "x_est", "y_est", "theta_est", "v", "omega"]
@@ -59,30 +61,18 @@ def station(kind, link, **others):
     return load("lab", {"estimator.kind": kind, **STATIONS[kind], **LINKS[link], **others})
 
 
-def furthest(many: Many, robot: int, run: laglab.Run, last: int = 10**6) -> float:
-    """Between the two, in pose, estimate and speeds, over the ticks up to `last`."""
-    assert many.last_tick[robot] + 1 == len(run.trace["x"])
-    ticks = min(many.last_tick[robot], last) + 1
-    there = np.hstack((many.truth, many.estimates, many.applied))[:ticks, :, robot]
-    one_by_one = np.stack([run.trace[name] for name in COLUMNS], axis=1)[:ticks]
-    assert (np.isnan(there) == np.isnan(one_by_one)).all()
-    return float(np.nanmax(np.abs(there - one_by_one)))
-
-
 @pytest.mark.parametrize(("link", "kind"), NOISY)
 def test_with_noise_over_the_first_seconds(link, kind):
     """Of the second of two robots, which have schedules of their own."""
     scenarios = [station(kind, link, seed=seed, duration=3.0) for seed in (1, 2)]
-    many = run_many(scenarios)
-    assert not many.unsure.any()
+    many = kept(scenarios)
     assert furthest(many, 1, laglab.run(scenarios[1])) < SHARP
 
 
 @pytest.mark.parametrize(("link", "kind"), QUIET)
 def test_without_noise_over_the_whole_run(link, kind):
     scenario = station(kind, link, noise=False, duration=6.0)
-    many = run_many([scenario])
-    assert not many.unsure.any()
+    many = kept([scenario])
     assert furthest(many, 0, laglab.run(scenario)) < SHARP
 
 
@@ -93,12 +83,11 @@ def test_the_verdicts_are_the_same(link, kind):
         station(kind, link, seed=seed, start=start, duration=9.0)
         for seed, start in ((3, [-3.0, -3.0, 0.0]), (4, [-8.0, 2.0, 1.0]))
     ]
-    many, verdicts = run_many(scenarios), []
-    assert not many.unsure.any()
+    many, verdicts = kept(scenarios), []
     for robot, scenario in enumerate(scenarios):
         run = laglab.run(scenario)
         assert furthest(many, robot, run, last=300) < SHARP
-        ends = dict(zip(("x", "y", "theta"), many.truth[:, :, robot].T, strict=True))
+        ends = dict(zip(("x", "y", "theta"), many.truth[:, :, robot], strict=True))
         verdicts.append(has_converged({**run.trace, **ends}, scenario.goal))
         assert verdicts[-1] == run.summary.converged
     assert verdicts == [True, False]
@@ -117,21 +106,21 @@ def test_answers_that_come_again_change_nothing(monkeypatch):
     monkeypatch.setattr(InlineLink, "send", twice)
     said_twice = laglab.run(scenario)
     assert said_twice.link["tick"].tolist() == said_once.link["tick"].tolist()
-    assert furthest(run_many([scenario]), 0, said_twice) < SHARP
+    assert furthest(kept([scenario]), 0, said_twice) < SHARP
 
 
 def test_they_diverge_at_the_same_tick():
     prior = {"estimator.initial_covariance": 0.05, "duration": 3.0}
     scenarios = [load("fig8", {**LINKS["bursts"], **prior, "seed": seed}) for seed in (1, 2)]
-    many = run_many(scenarios)
-    assert many.diverged.all()
-    assert many.last_tick.tolist() == [len(laglab.run(each).trace["x"]) - 1 for each in scenarios]
+    ends = run_many(scenarios, lambda _: None)
+    assert ends.diverged.all()
+    assert ends.last_tick.tolist() == [len(laglab.run(each).trace["x"]) - 1 for each in scenarios]
 
 
 def test_a_guard_that_acts_makes_it_unsure():
     scenario = station("ekf", "losses and jitter", duration=2.0, **GUARDED)
     assert laglab.run(scenario).alarms
-    assert run_many([scenario]).unsure.all()
+    assert run_many([scenario], lambda _: None).unsure.all()
 
 
 def test_what_was_recorded_of_a_link_happens_again(tmp_path):
@@ -140,12 +129,12 @@ def test_what_was_recorded_of_a_link_happens_again(tmp_path):
     with log.open("w", newline="") as file:
         csv.writer(file).writerows([done.link.keys(), *zip(*done.link.values(), strict=True)])
     again = load("lab", {"link.replay": str(log), "seed": 9, "duration": 2.0})
-    assert furthest(run_many([again]), 0, laglab.run(again)) < SHARP
+    assert furthest(kept([again]), 0, laglab.run(again)) < SHARP
 
 
 def test_a_failsafe_that_never_waits_is_one_too():
     scenario = load("lab", {"safety.link_timeout": 0.0, "duration": 1.0})
-    assert furthest(run_many([scenario]), 0, laglab.run(scenario)) < SHARP
+    assert furthest(kept([scenario]), 0, laglab.run(scenario)) < SHARP
 
 
 def test_one_schedule_serves_all_who_have_the_same_link():

@@ -137,7 +137,7 @@ class DelayedEkf(BatchEstimator[Delayed]):
 
     def predict(self, state: Delayed, leg: Leg) -> Delayed:
         there, at, turn, legs, since, sums, measured = state
-        one = spread(leg)
+        one = spread(self.setting.robots.model, leg)
         legs = append(legs, (leg, one), self.setting.measurement_delay + 1)
         return Delayed(there, at, turn, legs, since + 1, sums + one, measured)
 

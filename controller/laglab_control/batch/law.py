@@ -56,7 +56,8 @@ def drive(
         at_goal = near | (at_goal & leaving)
     if at_goal.any():
         turn = law.lambda_ / 2 * wrapped(theta_goal - theta)
-        speeds = Speeds(np.where(at_goal, 0.0, speeds.v), np.where(at_goal, turn, speeds.omega))
+        np.putmask(speeds.v, at_goal, 0.0)
+        np.putmask(speeds.omega, at_goal, turn)
     return Demands(speeds, at_goal)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab_control.batch.matrices import Symmetric, covariance_of, led
-from laglab_control.batch.rows import Belief, Heading, Pose, Row, Speeds, headings
+from laglab_control.batch.rows import Belief, Heading, Pose, Row, Speeds, near_headings
 from laglab_control.motion import Motion, Way
 from laglab_control.robot import RobotModel
 
@@ -43,7 +43,7 @@ def driven(model: RobotModel, last: Leg, u: Speeds) -> Leg:
     along += x
     across += y
     end = Way(along, across, theta + Ts * u.omega)
-    return Leg(u, last.heading, end, headings(end.theta))
+    return Leg(u, last.heading, end, near_headings(end.theta))
 
 
 class Turn(NamedTuple):
@@ -55,7 +55,7 @@ class Turn(NamedTuple):
     @classmethod
     def between(cls, leg: Leg, theta: Row) -> Self:
         """At the end of that leg."""
-        return cls(*headings(theta - leg.end.theta))
+        return cls(*near_headings(theta - leg.end.theta))
 
     def of(self, heading: Heading) -> Heading:
         """Where the robot looks when its odometer says `heading`."""
@@ -77,16 +77,20 @@ class Turn(NamedTuple):
 
 Spread = NDArray[np.float64]
 """(7, robots): sums over the legs of a stretch, of which the covariance of its end is made: of
-cos^2 and of cos sin of where each sets out to; of x, y, xx, xy and yy of where each ends."""
+cos^2 and of cos sin of where each sets out to, times the noise along it; of x, y, xx, xy and yy of
+where each ends, times the noise of its turn."""
 
 
-def spread(leg: Leg) -> Spread:
+def spread(model: RobotModel, leg: Leg) -> Spread:
     """Of one."""
+    n_xx, _, _, _, _, n_tt = model.noise
     (c, s), (x, y, _) = leg.before, leg.end
     sums = np.empty((7, len(x)))
-    sums[2], sums[3] = x, y
-    squares = (c, c), (c, s), (x, x), (x, y), (y, y)
-    for row, (a, b) in zip((0, 1, 4, 5, 6), squares, strict=True):
+    along, sums_x, sums_y = n_xx * c, sums[2], sums[3]
+    np.multiply(n_tt, x, sums_x)
+    np.multiply(n_tt, y, sums_y)
+    products = (along, c), (along, s), (sums_x, x), (sums_x, y), (sums_y, y)
+    for row, (a, b) in zip((0, 1, 4, 5, 6), products, strict=True):
         np.multiply(a, b, sums[row])
     return sums
 
@@ -97,20 +101,20 @@ def uncertain(model: RobotModel, sums: Spread, legs: int, end: Pose) -> Symmetri
     leg's end (x_j, y_j): [1 0 y_j - y; 0 1 x - x_j; 0 0 1]."""
     n_xx, _, _, _, _, n_tt = model.noise
     cc, cs, x, y, xx, xy, yy = sums
-    dx, dy = legs * end.x, legs * end.y
+    turned = legs * n_tt
+    dx, dy = turned * end.x, turned * end.y
     dx -= x
     dy -= y
     P_xx, P_xy, P_yy = end.y * (dy - y), end.y * x, end.x * (dx - x)
     P_xx += yy
+    P_xx += cc
     P_xy -= end.x * dy
     P_xy -= xy
+    P_xy += cs
     P_yy += xx
-    for each in (P_xx, P_xy, P_yy, dx, dy):
-        each *= n_tt
-    P_xx += n_xx * cc
-    P_xy += n_xx * cs
-    P_yy += n_xx * (legs - cc)
-    return Symmetric(P_xx, P_xy, np.negative(dy, dy), P_yy, dx, np.array([legs * n_tt]))
+    P_yy -= cc
+    P_yy += legs * n_xx
+    return Symmetric(P_xx, P_xy, np.negative(dy, dy), P_yy, dx, np.array([turned]))
 
 
 def carried(belief: Belief, turn: Turn, way: Pose, P: Symmetric) -> Belief:

@@ -43,6 +43,18 @@ def headings(angle: Row) -> Heading:
     return np.cos(angle), np.sin(angle)
 
 
+def near_headings(angle: Row) -> Heading:
+    """The same, but for the last bits: one tangent, of half the angle, is quicker than both."""
+    t = np.tan(0.5 * angle)
+    squared = t * t
+    length = 1.0 + squared
+    cosine = np.subtract(1.0, squared, squared)
+    cosine /= length
+    t += t
+    t /= length
+    return cosine, t
+
+
 def difference(z: Pose, x: Pose) -> Pose:
     """z - x, its heading wrapped."""
     return Way(z.x - x.x, z.y - x.y, wrapped(z.theta - x.theta))

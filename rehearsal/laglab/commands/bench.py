@@ -91,7 +91,7 @@ def live(
 @app.command("study")
 def study(
     robots: Annotated[int, typer.Option(min=1, help="Robots at once.")] = 1000,
-    ticks: TicksOption = 500,
+    ticks: TicksOption = 2000,
     rounds: RoundsOption = 3,
     json: JsonOption = None,
 ) -> None:

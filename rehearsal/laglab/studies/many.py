@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -29,37 +28,42 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
-class Many:
-    """What the runs leave, tick by tick; of what came after a run's end nothing counts."""
+class Ticks(NamedTuple):
+    """Some ticks in a row of all runs; what comes next is written over them."""
 
     truth: Array
-    """(ticks + 1, 3, robots) [m, m, rad]."""
+    """(3, ticks, robots) [m, m, rad]."""
     estimates: Array
     """The same; NaN where there is none."""
     P: Array
-    """(ticks + 1, 6, robots), the upper triangle of what is claimed; NaN where nothing is."""
+    """(6, ticks, robots), the upper triangle of what is claimed; NaN where nothing is."""
     applied: Array
-    """(ticks + 1, 2, robots) [m/s, rad/s]."""
+    """(2, ticks, robots) [m/s, rad/s]."""
+    ended: NDArray[np.bool_]
+    """(ticks, robots): that run is over, and what is here does not count."""
+
+
+Told = Callable[[Ticks], object]
+
+
+class Ends(NamedTuple):
+    """What has become of the runs, (robots,) each."""
+
     last_tick: NDArray[np.int64]
-    """(robots,)"""
     diverged: NDArray[np.bool_]
-    """(robots,): the run ended because the estimate did."""
+    """The run ended because the estimate did."""
     unsure: NDArray[np.bool_]
-    """(robots,): something happened that a batch cannot express; run them one by one."""
+    """Something happened that a batch cannot express; run them one by one."""
 
 
-def run_many(scenarios: Sequence[Scenario]) -> Many:
+def run_many(scenarios: Sequence[Scenario], told: Told) -> Ends:
     """All of them to the end. There must be no reason to run them one by one (`why_one_by_one`)."""
     from laglab_fmu import Fleet  # loads FMPy
 
-    scenario = scenarios[0]
-    many = _unwritten(scenario.must_end(), len(scenarios))
     parameters = [robot_parameters(each) for each in scenarios]
     with Fleet.open(parameters) as fleet, np.errstate(all="ignore"):  # what diverges overflows
-        way = OnTime(scenarios) if is_ideal(scenario) else Impaired(scenarios)
-        _run(fleet, scenario, way.answer, many)
-    return many
+        way = OnTime(scenarios) if is_ideal(scenarios[0]) else Impaired(scenarios)
+        return _run(fleet, scenarios[0], way.answer, told)
 
 
 def why_one_by_one(scenario: Scenario) -> str | None:
@@ -96,18 +100,6 @@ def is_ideal(scenario: Scenario) -> bool:
     return not link_fates(scenario) and scenario.safety.link_timeout > 0
 
 
-def _unwritten(last: int, robots: int) -> Many:
-    return Many(
-        truth=np.empty((last + 1, 3, robots)),
-        estimates=np.empty((last + 1, 3, robots)),
-        P=np.empty((last + 1, 6, robots)),
-        applied=np.empty((last + 1, 2, robots)),
-        last_tick=np.full(robots, last),
-        diverged=np.zeros(robots, np.bool_),
-        unsure=np.zeros(robots, np.bool_),
-    )
-
-
 def _starts(scenarios: Sequence[Scenario]) -> Array:
     """The first estimates (3, robots)."""
     return np.array([each.first_estimate() for each in scenarios]).T
@@ -126,29 +118,66 @@ class Answers(NamedTuple):
     """The robots whose guard would have acted by now."""
 
 
-def _run(fleet: Fleet, scenario: Scenario, answer: Callable[[Pose], Answers], many: Many) -> None:
+def _run(fleet: Fleet, scenario: Scenario, answer: Callable[[Pose], Answers], told: Told) -> Ends:
     """`answer` is given what is sampled at each tick."""
-    wheels, last = Wheels(scenario), len(many.truth) - 1
+    wheels, last, robots = Wheels(scenario), scenario.must_end(), len(fleet.readings)
+    page = Page(robots)
+    last_tick = np.full(robots, last)
+    diverged, unsure = np.zeros(robots, np.bool_), np.zeros(robots, np.bool_)
     for k in range(last + 1):
-        many.truth[k] = fleet.readings[:, :3].T
-        pose, P, sent, applied, lost, acts = answer(Pose(*fleet.readings[:, 3:6].T.copy()))
-        if pose is None or P is None:  # as the station reports it
-            many.estimates[k], many.P[k] = np.nan, np.nan
-        else:
-            _keep(many.estimates[k], pose)
-            _keep(many.P[k], P)
-        _keep(many.applied[k], applied)
-        many.unsure[:] |= ~many.diverged & (acts | refused(sent, scenario.safety))
-        ends = lost & ~many.diverged
-        many.last_tick[ends] = k
-        many.diverged[:] |= ends
+        answers = answer(Pose(*fleet.readings[:, 3:6].T.copy()))
+        page.write(fleet.readings[:, :3].T, answers, diverged)
+        unsure |= ~diverged & (answers.acts | refused(answers.sent, scenario.safety))
+        last_tick[answers.lost & ~diverged] = k
+        diverged |= answers.lost
+        if page.is_full or k == last:
+            told(page.take())
         if k < last:
-            fleet.step(wheels.turning(applied))
+            fleet.step(wheels.turning(answers.applied))
+    return Ends(last_tick, diverged, unsure)
 
 
-def _keep(rows: Array, values: Iterable[Array]) -> None:
+PAGE = 32
+"""Ticks."""
+
+
+class Page:
+    """Where ticks are written until it is full, and then again: fresh memory for each would take as
+    long as half of what a filter does in it."""
+
+    def __init__(self, robots: int) -> None:
+        truth, estimates, P, applied = (np.empty((each, PAGE, robots)) for each in (3, 3, 6, 2))
+        self._ticks = Ticks(truth, estimates, P, applied, np.empty((PAGE, robots), np.bool_))
+        self._filled = 0
+
+    @property
+    def is_full(self) -> bool:
+        """Whether it must be taken before the next tick."""
+        return self._filled == PAGE
+
+    def write(self, truth: Array, answers: Answers, ended: NDArray[np.bool_]) -> None:
+        """A tick; `truth` is (3, robots)."""
+        ticks, k = self._ticks, self._filled
+        ticks.truth[:, k] = truth
+        if answers.pose is None or answers.P is None:  # as the station reports it
+            ticks.estimates[:, k], ticks.P[:, k] = np.nan, np.nan
+        else:
+            _keep(ticks.estimates, k, answers.pose)
+            _keep(ticks.P, k, answers.P)
+        _keep(ticks.applied, k, answers.applied)
+        ticks.ended[k] = ended
+        self._filled += 1
+
+    def take(self) -> Ticks:
+        """All that is written; it is empty then."""
+        filled, self._filled = self._filled, 0
+        truth, estimates, P, applied = (each[:, :filled] for each in self._ticks[:4])
+        return Ticks(truth, estimates, P, applied, self._ticks.ended[:filled])
+
+
+def _keep(rows: Array, k: int, values: Iterable[Array]) -> None:
     for row, each in zip(rows, values, strict=True):
-        row[:] = each
+        row[k] = each
 
 
 class OnTime:

@@ -13,7 +13,7 @@ from laglab.results.target import target
 from laglab.runs.robot_side import link_fates
 from laglab.scenario import Scenario, changed
 from laglab.scenario.overrides import Overrides
-from laglab.studies.sweep.judged import Record, judgements
+from laglab.studies.sweep.judged import Stretch, judgements
 from laglab.studies.workers import shared_out
 
 PLAN = 45
@@ -155,15 +155,15 @@ def tried(trial: Trial) -> Outcome:
     done = run(scenario)
     trace, diverged = done.trace, done.summary.outcome == "diverged"
     speeds = np.stack([trace["v"], trace["omega"]], axis=1)
-    record = Record(
+    record = Stretch(
         robot_pose(trace)[np.newaxis],
         loop_estimates(trace)[np.newaxis],
         None,
         speeds[np.newaxis],
-        np.array([trace["tick"][-1] if diverged else np.nan]),
     )
+    ended = np.array([trace["tick"][-1] if diverged else np.nan])
     with np.errstate(all="ignore"):  # what diverges overflows
-        judged = judgements(record, target(scenario), scenario.link.m)
+        judged = judgements(record, ended, target(scenario), scenario.link.m)
         driven = np.hypot(*np.diff(robot_pose(trace)[:, :2], axis=0).T).sum()
         rms = np.hypot(judged.rms_x[0], judged.rms_y[0])
     return Outcome(

@@ -8,13 +8,10 @@ import numpy as np
 from laglab.results.target import target
 from laglab.scenario import Scenario
 from laglab.scenario.tables.link import LinkTable
-from laglab.studies.many import Many, is_ideal, run_many
+from laglab.studies.many import Ticks, is_ideal, run_many
 from laglab.studies.sweep.cell import Cell
-from laglab.studies.sweep.judged import Judgements, Record, judgements
+from laglab.studies.sweep.judged import Judge, Judgements, Stretch
 from laglab.studies.sweep.one_by_one import judged_alone
-
-SQUARE = [[0, 1, 2], [1, 3, 4], [2, 4, 5]]
-"""Where in an upper triangle the elements of a whole matrix are."""
 
 
 def all_at_once(cells: Sequence[Cell]) -> list[Judgements]:
@@ -44,9 +41,10 @@ def _in_common(scenario: Scenario) -> tuple[bool, str]:
 def _together(cells: Sequence[Cell]) -> Iterator[Judgements]:
     """One batch."""
     scenario, scenarios = cells[0].scenario, [run for cell in cells for run in cell.runs()]
-    many = run_many(scenarios)
-    judged = judgements(_record(many), target(scenario), scenario.link.m)
-    for robot in np.flatnonzero(many.unsure):
+    judge = Judge(target(scenario), scenario.link.m, len(scenarios))
+    ends = run_many(scenarios, lambda ticks: judge.add(_recorded(ticks)))
+    judged = judge.judgements(np.where(ends.diverged, ends.last_tick, np.nan))
+    for robot in np.flatnonzero(ends.unsure):
         alone = judged_alone(scenarios[robot])
         for column, value in zip(judged, alone, strict=True):
             column[robot] = value[0]
@@ -56,12 +54,9 @@ def _together(cells: Sequence[Cell]) -> Iterator[Judgements]:
         yield Judgements._make(column[some] for column in judged)
 
 
-def _record(many: Many) -> Record:
-    ticks = np.arange(len(many.truth))
-    after = ticks[:, np.newaxis] > many.last_tick  # nothing was recorded there
-    truth, estimates, P, applied = (
-        np.where(after[:, np.newaxis], np.nan, each).transpose(2, 0, 1)
-        for each in (many.truth, many.estimates, many.P, many.applied)
-    )
-    diverged = np.where(many.diverged, many.last_tick, np.nan)
-    return Record(truth, estimates, P[..., SQUARE], applied, diverged)
+def _recorded(ticks: Ticks) -> Stretch:
+    """Nothing after a run's end."""
+    *rows, ended = ticks
+    if ended.any():
+        rows = [np.where(ended, np.nan, each) for each in rows]
+    return Stretch(*[each.transpose(2, 1, 0) for each in rows])

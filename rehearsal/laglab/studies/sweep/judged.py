@@ -1,12 +1,11 @@
 """What became of runs, one or many at once: the columns of a study."""
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.results.nees import nees
+from laglab.results.nees import nees_by_triangle
 from laglab.results.numbers import (
     RmsError,
     at_goal,
@@ -17,25 +16,21 @@ from laglab.results.numbers import (
 from laglab.results.target import Target
 
 Array = NDArray[np.float64]
-AT_ONCE = 8
-"""Robots: so many stay within a processor's cache."""
 
 
-class Record(NamedTuple):
-    """What robots did, and what was believed of them. NaN from the tick on at which there is
-    nothing any more, or where there is nothing yet."""
+class Stretch(NamedTuple):
+    """What robots did for some ticks in a row, and what was believed of them. NaN from the tick on
+    at which there is nothing any more, or where there is nothing yet."""
 
     truth: Array
     """(robots, ticks, 3), the pose [m, m, rad]."""
     estimates: Array | None
     """(robots, ticks, 3), x̂_k of the estimator in the loop; None: it estimates nothing."""
     claimed: Array | None
-    """(robots, ticks, 3, 3), the covariance that the station claims for it; None: nothing."""
+    """(robots, ticks, 6), of the covariance that the station claims for it the upper triangle;
+    None: nothing."""
     applied: Array
     """(robots, ticks, 2), the speeds v, ω in force on [t_k, t_{k+1}) [m/s, rad/s]."""
-    diverged: Array
-    """(robots,), the tick at which the run ended because the estimate had diverged; NaN: it went
-    on to its last tick."""
 
 
 class Judgements(NamedTuple):
@@ -59,72 +54,81 @@ class Judgements(NamedTuple):
     diverged_tick: Array
 
 
-def judgements(record: Record, of: Target, measurement_delay: int) -> Judgements:
-    """Of every robot. Needs little memory beside the record itself."""
-    judged = [_of(part, of, measurement_delay) for part in _parts(record)]
-    return joined(judged)
+class Judge:
+    """Judges runs by their ticks as they come; what is kept does not grow with them."""
+
+    def __init__(self, of: Target, measurement_delay: int, robots: int) -> None:
+        self._of = of
+        self._measurement_delay = measurement_delay
+        self._ticks = 0
+        self._last_pose = np.full((robots, 3), np.nan)
+        self._away = np.full(robots, -1)
+        """The last tick at which it was elsewhere than where it ought to be."""
+        self._rms = RmsError()
+        self._nees, self._claims = np.zeros(robots), np.zeros(robots)
+        """The sum, and of how many."""
+        self._largest = np.full((robots, 2), np.nan)
+
+    def add(self, stretch: Stretch) -> None:
+        """The next ticks."""
+        truth, estimates, claimed, applied = stretch
+        ticks = np.arange(self._ticks, self._ticks + truth.shape[1])
+        there = at_goal(truth, self._of.poses(ticks.astype(np.float64)))
+        away = np.where(there, -1, ticks).max(axis=1)
+        self._away = np.maximum(self._away, away)
+        recorded = np.count_nonzero(~np.isnan(truth[..., 0]), axis=1)
+        some = np.flatnonzero(recorded)
+        self._last_pose[some] = truth[some, recorded[some] - 1]
+        largest = np.fmax.reduce(np.abs(applied), axis=1)
+        self._largest = np.fmax(self._largest, largest)
+        if estimates is not None:
+            late = slice(max(self._measurement_delay - self._ticks, 0), None)
+            self._compare(truth[:, late], estimates[:, late], claimed, late)
+        self._ticks += len(ticks)
+
+    def _compare(self, truth: Array, estimates: Array, claimed: Array | None, late: slice) -> None:
+        error = pose_difference(estimates, truth)
+        self._rms.add(error)
+        if claimed is not None:
+            values = nees_by_triangle(error, claimed[:, late])
+            missing = np.isnan(values)
+            self._nees += np.where(missing, 0.0, values).sum(axis=1)
+            self._claims += (~missing).sum(axis=1)
+
+    def judgements(self, diverged: Array) -> Judgements:
+        """Of every robot. `diverged` (robots,): the tick at which its run ended because the
+        estimate had diverged; NaN: it went on to its last tick."""
+        last, sample_time = self._ticks - 1, self._of.sample_time
+        completed = np.isnan(diverged)
+        time: Array = np.arange(self._ticks) * np.float64(sample_time)
+        settled = np.where(completed & (self._away < last), self._away + 1, np.nan)
+        ended = np.where(completed, last, diverged)
+        rho, theta_error = goal_errors(self._last_pose, self._of.poses(ended))
+        rms = np.array(np.broadcast_to(self._rms.values(), self._last_pose.shape))
+        with np.errstate(invalid="ignore"):
+            mean_nees = self._nees / self._claims
+        return Judgements(
+            converged=completed & (self._away < np.argmax(last_second(time))),
+            settled_s=settled * sample_time,
+            rms_x=rms[:, 0],
+            rms_y=rms[:, 1],
+            rms_theta=rms[:, 2],
+            nees=mean_nees,
+            final_rho=rho,
+            final_theta_error=theta_error,
+            max_v=self._largest[:, 0],
+            max_omega=self._largest[:, 1],
+            diverged_tick=diverged,
+        )
+
+
+def judgements(record: Stretch, diverged: Array, of: Target, measurement_delay: int) -> Judgements:
+    """Of runs that are there from their first tick to their last."""
+    judge = Judge(of, measurement_delay, len(record.truth))
+    judge.add(record)
+    return judge.judgements(diverged)
 
 
 def joined(parts: list[Judgements]) -> Judgements:
     """All of them, one after the other."""
     return Judgements(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
-
-
-def _parts(record: Record) -> Iterator[Record]:
-    for first in range(0, len(record.truth), AT_ONCE):
-        some = slice(first, first + AT_ONCE)
-        yield Record(*(None if each is None else each[some] for each in record))  # type: ignore[arg-type]
-
-
-def _of(record: Record, of: Target, m: int) -> Judgements:
-    truth, estimates, claimed, applied, diverged = record
-    (robots, ticks, _), sample_time = truth.shape, of.sample_time
-    wanted = of.poses(np.arange(float(ticks)))
-    there = at_goal(truth, wanted)
-    completed = np.isnan(diverged)
-    time: Array = np.arange(ticks) * np.float64(sample_time)
-    last = np.where(completed, ticks - 1, np.nan_to_num(diverged)).astype(int)
-    rho, theta_error = goal_errors(truth[np.arange(robots), last], wanted[last])
-    rms, mean_nees = _of_estimates(truth, estimates, claimed, m)
-    largest = np.fmax.reduce(np.abs(applied), axis=1)
-    return Judgements(
-        converged=completed & there[:, last_second(time)].all(axis=1),
-        settled_s=np.where(completed, _settled(there) * sample_time, np.nan),
-        rms_x=rms[:, 0],
-        rms_y=rms[:, 1],
-        rms_theta=rms[:, 2],
-        nees=mean_nees,
-        final_rho=rho,
-        final_theta_error=theta_error,
-        max_v=largest[:, 0],
-        max_omega=largest[:, 1],
-        diverged_tick=diverged,
-    )
-
-
-def _settled(there: NDArray[np.bool_]) -> Array:
-    """The first tick from which it holds to the end; NaN when it does not."""
-    ticks = there.shape[1]
-    away = ticks - np.argmax(~there[:, ::-1], axis=1)  # one after the last tick elsewhere
-    first = np.where(there.all(axis=1), 0, away)
-    return np.where(there[:, -1], first, np.nan)
-
-
-def _of_estimates(
-    truth: Array, estimates: Array | None, claimed: Array | None, m: int
-) -> tuple[Array, Array]:
-    nothing = np.full(len(truth), np.nan)
-    if estimates is None:
-        return np.full((len(truth), 3), np.nan), nothing
-    error = pose_difference(estimates[:, m:], truth[:, m:])
-    rms = RmsError()
-    rms.add(error)
-    return rms.values(), nothing if claimed is None else _mean(nees(error, claimed[:, m:]))
-
-
-def _mean(values: Array) -> Array:
-    """Along the ticks, where there is a value; NaN where there is none."""
-    missing = np.isnan(values)
-    with np.errstate(invalid="ignore", over="ignore"):
-        mean: Array = np.where(missing, 0.0, values).sum(axis=1) / (~missing).sum(axis=1)
-    return mean

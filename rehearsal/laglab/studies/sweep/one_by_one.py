@@ -9,12 +9,12 @@ import numpy as np
 from laglab.errors import RunError
 from laglab.interface import run
 from laglab.results.numbers import loop_estimates, robot_pose
-from laglab.results.run import Run
 from laglab.results.target import target
 from laglab.scenario import Scenario
 from laglab.studies.sweep.cell import Cell
-from laglab.studies.sweep.judged import Array, Judgements, Record, joined, judgements
+from laglab.studies.sweep.judged import Array, Judgements, Stretch, joined, judgements
 from laglab_control import Applied, Control, Controller, Echo, Measured
+from laglab_gateway import Trace
 
 ENDINGS = ("completed", "diverged")
 
@@ -24,7 +24,7 @@ class Claiming(Controller):
     """The station's controller; what covariance it claims is kept, tick by tick."""
 
     claims: list[Array] = field(default_factory=list)
-    """(3, 3) each; NaN where nothing is claimed."""
+    """(6,) each, the upper triangle; NaN where nothing is claimed."""
 
     def start(self) -> Control:
         """At tick 0."""
@@ -40,7 +40,8 @@ class Claiming(Controller):
     ) -> Control:
         """The same."""
         control = super().answer(control, measurements, echoes, recalled)
-        self.claims.append(np.full((3, 3), np.nan) if control.P is None else control.P)
+        P = np.full((3, 3), np.nan) if control.P is None else control.P
+        self.claims.append(P[np.triu_indices(3)])
         return control
 
 
@@ -52,21 +53,19 @@ def one_by_one(cell: Cell) -> Judgements:
 def judged_alone(scenario: Scenario) -> Judgements:
     """What became of one run. Raises RunError."""
     claims: list[Array] = []
-    record = _record(run(scenario, controller=partial(Claiming, claims=claims)), claims)
-    return judgements(record, target(scenario), scenario.link.m)
-
-
-def _record(done: Run, claims: Sequence[Array]) -> Record:
-    """Of one robot."""
-    trace, outcome = done.trace, done.summary.outcome
+    done = run(scenario, controller=partial(Claiming, claims=claims))
+    outcome = done.summary.outcome
     if outcome not in ENDINGS:
-        raise RunError(f"{done.scenario.name}, seed {done.scenario.seed}: {done.summary.verdict}")
-    claimed = np.full((len(trace["tick"]), 3, 3), np.nan)
+        raise RunError(f"{scenario.name}, seed {scenario.seed}: {done.summary.verdict}")
+    last = done.trace["tick"][-1] if outcome == "diverged" else np.nan
+    record = _record(done.trace, claims)
+    return judgements(record, np.array([last]), target(scenario), scenario.link.m)
+
+
+def _record(trace: Trace, claims: Sequence[Array]) -> Stretch:
+    """Of one robot."""
+    claimed = np.full((len(trace["tick"]), 6), np.nan)
     claimed[: len(claims)] = claims[: len(claimed)]
-    return Record(
-        robot_pose(trace)[np.newaxis],
-        loop_estimates(trace)[np.newaxis],
-        claimed[np.newaxis],
-        np.stack([trace["v"], trace["omega"]], axis=1)[np.newaxis],
-        np.array([trace["tick"][-1] if outcome == "diverged" else np.nan]),
-    )
+    speeds = np.stack([trace["v"], trace["omega"]], axis=1)
+    whole = robot_pose(trace), loop_estimates(trace), claimed, speeds
+    return Stretch(*[each[np.newaxis] for each in whole])
