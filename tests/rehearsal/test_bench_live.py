@@ -24,3 +24,5 @@ def test_the_benchmark_says_what_a_page_costs(
         "100 that stall",
     ]
     assert all(each.fastest > 0 for each in report.results[0].timings)
+    assert len(report.figures) == 3
+    assert all(each.value > 0 for each in report.figures)
