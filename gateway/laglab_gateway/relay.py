@@ -157,7 +157,7 @@ class Relay(RobotSide):
         """What was on its way to the robot, or from it, was meant for the one before."""
         self.announce(f"the robot has begun again at its tick {tick}")
         self.first, self._in_force = tick - (self.elapsed + 1), tick - 1
-        self._answered_through = tick - 1
+        self._answer.through = tick - 1
         self._commands.clear()
         self._commands.first = self.first
         self._measurements.clear()

@@ -7,9 +7,9 @@ own (`relay`).
 
 import math
 from abc import ABC, abstractmethod
-from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
 
+from laglab_gateway.answer import Answer
 from laglab_gateway.config import GatewayConfig
 from laglab_gateway.drive import WHY_STOPPING, Drive, Rejection, Safety, follow_plan, rejection
 from laglab_gateway.incoming import Came, Incoming
@@ -29,7 +29,6 @@ from laglab_protocol import (
     MAV_SEVERITY_WARNING,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
-    UNANNOUNCED,
     Applied,
     Command,
     End,
@@ -46,7 +45,6 @@ from laglab_protocol import (
     Settings,
     Statustext,
     Tick,
-    frames_of,
 )
 
 Cell = float | None
@@ -86,12 +84,9 @@ class RobotSide(ABC):
         self._measurements: Channel[Measurement | Applied] = Channel(
             "measurement", m, Ts, fates.get("measurement")
         )
-        self._estimates: deque[Estimate] = deque(maxlen=UNANNOUNCED)
-        self._beside: deque[Recall | Plan] = deque(maxlen=UNANNOUNCED)
-        """What goes with the command that is to come."""
+        self._answer = Answer()
         self._memory = SpeedMemory()
         self._owed = Owed()
-        self._answered_through = -1
         self._drive = Drive()
         self._rejected: Rejection | None = None
         """Why nothing was followed since the last command that was."""
@@ -101,9 +96,7 @@ class RobotSide(ABC):
         """Nothing was said yet at this tick."""
         self.tick = tick
         self._batch: list[Message] = []
-        self._estimates.clear()
-        self._beside.clear()
-        self._command: Command | None = None
+        self._answer.begin()
 
     @property
     def elapsed(self) -> int:
@@ -123,7 +116,7 @@ class RobotSide(ABC):
     @property
     def answered(self) -> bool:
         """Whether the station has said all it has to say on this tick."""
-        return self._command is not None
+        return self._answer.command is not None
 
     @abstractmethod
     def open_tick(self) -> list[bytes]:
@@ -165,18 +158,9 @@ class RobotSide(ABC):
                 self.connected = True
             case Command() | Recall() | Plan() if not is_for_robot(message):
                 pass  # for another robot on the same line
-            case Recall() | Plan():
-                self._beside.append(message)
-            case Estimate() if message.tick == self.tick and not self.answered:
-                self._estimates.append(message)
-            case Command() if message.tick == self.tick and not self.answered:
-                self._take_answer(message)
-            case Command() if self._answered_through < message.tick < self.tick:
-                self._push(message)
-            case Command():  # said again, or of a tick that has not come, as was asked before it
-                self._beside.clear()
-            case Estimate():
-                pass
+            case Estimate() | Recall() | Plan() | Command():
+                if said := self._answer.take(message, self.tick):
+                    self._commands.push(self.elapsed, *said)
             case Statustext():
                 if not self.answered:  # said again with a repeated answer, it is told once
                     self.announce(message.text.decode(errors="replace"))
@@ -189,7 +173,7 @@ class RobotSide(ABC):
     def _take_end(self, end: End) -> None:
         """Of a run that is past, or that has not come this far, it ends nothing."""
         begun = bool(self._batch)
-        if self.outcome or (begun and self._answered_through <= end.tick <= self.tick):
+        if self.outcome or (begun and self._answer.through <= end.tick <= self.tick):
             self.station_end = end
 
     def _answers(self, frame: Frame, asker: Asker | None) -> list[Message]:
@@ -197,26 +181,6 @@ class RobotSide(ABC):
             self.station_settings = frame.message
             return [self.settings]
         return self.services.answer(frame, self.state, asker)
-
-    def _take_answer(self, command: Command) -> None:
-        if not self._is_whole(command):
-            self._estimates.clear()
-            self._beside.clear()
-            return  # a frame of this answer was lost: the repeat will bring it whole
-        self._command = command
-        self._push(command)
-
-    def _is_whole(self, command: Command) -> bool:
-        """Whether all is here that was said before it."""
-        plans = sum(isinstance(each, Plan) for each in self._beside)
-        said = len(self._estimates) + len(self._beside) - plans
-        return said >= command.estimates and plans >= frames_of(command)
-
-    def _push(self, command: Command) -> None:
-        """Put it on the link, with what was said in the same breath, however late it comes."""
-        self._answered_through = command.tick
-        self._commands.push(self.elapsed, command, self._beside)
-        self._beside.clear()
 
     def _take_commands(self, tick: int) -> Came:
         """What has come across the link by `tick`; what cannot be followed any more is counted."""
@@ -290,8 +254,8 @@ class RobotSide(ABC):
 
     def _close(self) -> None:
         self.audit.unanswered += not self.answered
-        if self._estimates:
-            self.notes.said(self._estimates[0], self.elapsed)
+        if self._answer.estimates:
+            self.notes.said(self._answer.estimates[0], self.elapsed)
         if self.audit.emergency_stopped(self.services.arming.stops, self.tick):
             self.announce(EMERGENCY_STOP, MAV_SEVERITY_EMERGENCY)
         self.outcome = self.outcome or self._ending
@@ -312,11 +276,13 @@ class RobotSide(ABC):
 
     @property
     def _estimate(self) -> tuple[Cell, Cell, Cell]:
-        return self._estimates[0].pose if self._estimates else (None, None, None)
+        estimates = self._answer.estimates
+        return estimates[0].pose if estimates else (None, None, None)
 
     @property
     def _sent(self) -> tuple[Cell, Cell]:
-        return self._command.speeds if self._command else (None, None)
+        command = self._answer.command
+        return command.speeds if command else (None, None)
 
     def end(self, reason: EndReason) -> bytes:
         """The frame that tells the station that the run is over."""

@@ -107,5 +107,5 @@ def test_what_no_tick_closes_does_not_pile_up(robot: Robot) -> None:
         frame = Sender(ROBOT_SYSTEM, ROBOT_COMPONENT).frame(Measurement(*[0.0] * 5, 0, -1))
         for each in frames_in(frame):
             relay.hear_robot(each)
-    assert len(gateway._estimates) < 300
+    assert len(gateway._answer.estimates) < 300
     assert len(relay._coming) < 300

@@ -1,0 +1,60 @@
+"""The station's answer to a tick, put together from its messages."""
+
+from collections import deque
+from typing import NamedTuple
+
+from laglab_protocol import UNANNOUNCED, Command, Estimate, Plan, Recall, frames_of
+
+
+class Said(NamedTuple):
+    """A command, and what goes with it."""
+
+    command: Command
+    beside: list[Recall | Plan]
+
+
+class Answer:
+    """To the tick that the robot is at; of those before it what comes late."""
+
+    def __init__(self) -> None:
+        self.through = -1
+        """The tick of the last command that was taken."""
+        self.begin()
+
+    def begin(self) -> None:
+        """Nothing was said yet at this tick."""
+        self.command: Command | None = None
+        self.estimates: deque[Estimate] = deque(maxlen=UNANNOUNCED)
+        self._beside: deque[Recall | Plan] = deque(maxlen=UNANNOUNCED)
+
+    def take(self, message: Estimate | Recall | Plan | Command, tick: int) -> Said | None:
+        """What goes on the link with it at `tick`: a command that is answer to this tick and whole,
+        or to one before, however late it comes."""
+        match message:
+            case Recall() | Plan():
+                self._beside.append(message)
+            case Estimate() if message.tick == tick and self.command is None:
+                self.estimates.append(message)
+            case Command() if message.tick == tick and self.command is None:
+                if self._is_whole(message):
+                    self.command = message
+                    return self._said(message)
+                self.estimates.clear()  # a frame was lost: the repeat will bring it whole
+                self._beside.clear()
+            case Command() if self.through < message.tick < tick:
+                return self._said(message)
+            case Command():  # said again, or of a tick that has not come, as was asked before it
+                self._beside.clear()
+        return None
+
+    def _is_whole(self, command: Command) -> bool:
+        """Whether all is here that was said before it."""
+        plans = sum(isinstance(each, Plan) for each in self._beside)
+        said = len(self.estimates) + len(self._beside) - plans
+        return said >= command.estimates and plans >= frames_of(command)
+
+    def _said(self, command: Command) -> Said:
+        self.through = command.tick
+        said = Said(command, list(self._beside))
+        self._beside.clear()
+        return said
