@@ -9,7 +9,7 @@ import pytest
 
 import laglab
 from laglab.results.nees import nees
-from laglab.results.target import Target
+from laglab.scenario import Target
 from laglab.studies.sweep.cell import Cell
 from laglab.studies.sweep.compute import computed
 from laglab.studies.sweep.judged import Record, judgements

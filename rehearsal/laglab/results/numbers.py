@@ -9,6 +9,8 @@ from laglab.results.summary import Errors
 from laglab_gateway import Trace
 
 AXES = ("x", "y", "theta")
+VARIANCES = ("p_xx", "p_yy", "p_tt")
+"""Of these, as tables call them."""
 DISTANCE_BOUND = 0.06
 HEADING_BOUND = 0.05
 LAST_SECOND = 1.0

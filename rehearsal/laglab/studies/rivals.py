@@ -9,7 +9,6 @@ from msgspec import Struct
 
 from laglab.interface import run
 from laglab.results.numbers import loop_estimates, robot_pose
-from laglab.results.target import target
 from laglab.runs.robot_side import link_fates
 from laglab.scenario import Scenario, changed
 from laglab.scenario.overrides import Overrides
@@ -163,7 +162,7 @@ def tried(trial: Trial) -> Outcome:
         np.array([trace["tick"][-1] if diverged else np.nan]),
     )
     with np.errstate(all="ignore"):  # what diverges overflows
-        judged = judgements(record, target(scenario), scenario.link.m)
+        judged = judgements(record, scenario.target, scenario.link.m)
         driven = np.hypot(*np.diff(robot_pose(trace)[:, :2], axis=0).T).sum()
         rms = np.hypot(judged.rms_x[0], judged.rms_y[0])
     return Outcome(

@@ -5,7 +5,6 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from laglab.results.target import target
 from laglab.scenario import Scenario
 from laglab.scenario.tables.link import LinkTable
 from laglab.studies.many import Many, is_ideal, run_many
@@ -45,7 +44,7 @@ def _together(cells: Sequence[Cell]) -> Iterator[Judgements]:
     """One batch."""
     scenario, scenarios = cells[0].scenario, [run for cell in cells for run in cell.runs()]
     many = run_many(scenarios)
-    judged = judgements(_record(many), target(scenario), scenario.link.m)
+    judged = judgements(_record(many), scenario.target, scenario.link.m)
     for robot in np.flatnonzero(many.unsure):
         alone = judged_alone(scenarios[robot])
         for column, value in zip(judged, alone, strict=True):

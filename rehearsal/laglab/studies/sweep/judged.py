@@ -14,7 +14,7 @@ from laglab.results.numbers import (
     last_second,
     pose_difference,
 )
-from laglab.results.target import Target
+from laglab.scenario import Target
 
 Array = NDArray[np.float64]
 AT_ONCE = 8

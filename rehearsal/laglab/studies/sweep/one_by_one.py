@@ -10,7 +10,6 @@ from laglab.errors import RunError
 from laglab.interface import run
 from laglab.results.numbers import loop_estimates, robot_pose
 from laglab.results.run import Run
-from laglab.results.target import target
 from laglab.scenario import Scenario
 from laglab.studies.sweep.cell import Cell
 from laglab.studies.sweep.judged import Array, Judgements, Record, joined, judgements
@@ -53,7 +52,7 @@ def judged_alone(scenario: Scenario) -> Judgements:
     """What became of one run. Raises RunError."""
     claims: list[Array] = []
     record = _record(run(scenario, controller=partial(Claiming, claims=claims)), claims)
-    return judgements(record, target(scenario), scenario.link.m)
+    return judgements(record, scenario.target, scenario.link.m)
 
 
 def _record(done: Run, claims: Sequence[Array]) -> Record:
