@@ -11,9 +11,9 @@ from typing import Any, Protocol, Self, TypeVar
 
 from msgspec import Struct
 
-from laglab.errors import LaglabError, RunError
+from laglab.errors import RunError
+from laglab.runs.answers import answer_all
 from laglab.runs.child import LOOK_UP, Child, Inbox, Tell, started
-from laglab.runs.errors import SIDE_ERRORS
 from laglab.runs.reports import Computed, Ended, Failed
 
 Job = TypeVar("Job")
@@ -131,11 +131,8 @@ def _given_up(asked: _Asked, how: str) -> bool:
 
 def work(call: Call, tell: Tell) -> None:
     """In the worker: one job."""
-    try:
-        function, job = pickle.loads(call.pickled)
-        tell(Computed(pickle.dumps(function(job))))
-    except (LaglabError, *SIDE_ERRORS) as error:
-        tell(Failed(str(error), begun=True))
+    function, job = pickle.loads(call.pickled)
+    answer_all(tell, map(function, [job]))
 
 
 def as_done(
