@@ -10,9 +10,9 @@ import pytest
 import laglab
 from laglab.results.nees import nees
 from laglab.scenario import Target
+from laglab.studies.judged import Record, judgements
 from laglab.studies.sweep.cell import Cell
 from laglab.studies.sweep.compute import computed
-from laglab.studies.sweep.judged import Record, judgements
 from laglab.studies.sweep.loading import load_study
 from laglab.studies.sweep.ways import how
 

@@ -14,8 +14,7 @@ from laglab.progress import tracked
 from laglab.results.figures import picture_place, save
 from laglab.scenario import Scenario
 from laglab.scenario.tables.estimator import COMPARABLE, comparable
-from laglab.studies.consistency import nth, samples, verdict
-from laglab.studies.consistency_report import consistency_table, draw_consistency
+from laglab.studies.consistency import consistency_table, draw_consistency, nth, samples, verdict
 from laglab.tables import terminal
 
 JUDGED = ("ekf", "popf", "popf-exact", "delayed-ekf")

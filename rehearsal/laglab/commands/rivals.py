@@ -15,8 +15,17 @@ from laglab.results.figures import picture_place, save
 from laglab.runs.plant import check_plant
 from laglab.runs.station_side import check_parts
 from laglab.scenario import Scenario
-from laglab.studies.rivals import LINKS, OWN_LINK, STRATEGIES, links_of, outcomes, trials
-from laglab.studies.rivals_report import draw_rivals, rivals_table, scores
+from laglab.studies.rivals import (
+    LINKS,
+    OWN_LINK,
+    STRATEGIES,
+    draw_rivals,
+    links_of,
+    outcomes,
+    rivals_table,
+    scores,
+    trials,
+)
 from laglab.tables import terminal
 
 

@@ -10,8 +10,15 @@ from laglab.extras import REHEARSING, require
 from laglab.progress import tracked
 from laglab.results.figures import picture_place, save
 from laglab.scenario.tables.names import known_estimator
-from laglab.studies.trust import CONDITIONS, DEFAULT, fared, stations
-from laglab.studies.trust_report import draw_trust, scores, trust_table
+from laglab.studies.trust import (
+    CONDITIONS,
+    DEFAULT,
+    draw_trust,
+    fared,
+    scores,
+    stations,
+    trust_table,
+)
 from laglab.tables import terminal
 from laglab_control import ESTIMATORS
 

@@ -68,6 +68,14 @@ def pose_difference(poses: Array, others: Array) -> Array:
     return difference
 
 
+def mean_of_known(values: Array, axis: int = 0) -> Array:
+    """Along one axis; NaN where there is no value."""
+    there = ~np.isnan(values)
+    with np.errstate(invalid="ignore", over="ignore"):
+        mean: Array = np.where(there, values, 0).sum(axis=axis) / there.sum(axis=axis)
+    return mean
+
+
 def goal_errors(pose: Array, goal: Goal) -> tuple[Array, Array]:
     """Distance to the goal ρ [m] and heading error [rad] of poses, shape (..., 3)."""
     off = pose - np.asarray(goal)

@@ -2,7 +2,7 @@
 
 from laglab.scenario.loading import changed, load, shipped, shipped_names
 from laglab.scenario.model import Scenario
-from laglab.scenario.overrides import Overrides, assignment
+from laglab.scenario.overrides import Overrides, assignment, both_ways
 from laglab.scenario.target import Target
 from laglab.scenario.timeline_file import read_timeline
 
@@ -11,6 +11,7 @@ __all__ = [
     "Scenario",
     "Target",
     "assignment",
+    "both_ways",
     "changed",
     "load",
     "read_timeline",

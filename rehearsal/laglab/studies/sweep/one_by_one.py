@@ -8,11 +8,10 @@ import numpy as np
 
 from laglab.errors import RunError
 from laglab.interface import run
-from laglab.results.numbers import loop_estimates, robot_pose
 from laglab.results.run import Run
 from laglab.scenario import Scenario
+from laglab.studies.judged import Array, Judgements, Record, joined, judgements, record_of
 from laglab.studies.sweep.cell import Cell
-from laglab.studies.sweep.judged import Array, Judgements, Record, joined, judgements
 from laglab_control import Applied, Control, Controller, Echo, Measured
 
 ENDINGS = ("completed", "diverged")
@@ -57,15 +56,8 @@ def judged_alone(scenario: Scenario) -> Judgements:
 
 def _record(done: Run, claims: Sequence[Array]) -> Record:
     """Of one robot."""
-    trace, outcome = done.trace, done.summary.outcome
-    if outcome not in ENDINGS:
+    if done.summary.outcome not in ENDINGS:
         raise RunError(f"{done.scenario.name}, seed {done.scenario.seed}: {done.summary.verdict}")
-    claimed = np.full((len(trace["tick"]), 3, 3), np.nan)
+    claimed = np.full((len(done.trace["tick"]), 3, 3), np.nan)
     claimed[: len(claims)] = claims[: len(claimed)]
-    return Record(
-        robot_pose(trace)[np.newaxis],
-        loop_estimates(trace)[np.newaxis],
-        claimed[np.newaxis],
-        np.stack([trace["v"], trace["omega"]], axis=1)[np.newaxis],
-        np.array([trace["tick"][-1] if outcome == "diverged" else np.nan]),
-    )
+    return record_of(done, claimed)

@@ -12,8 +12,12 @@ from laglab.results.numbers import (
     at_goal,
     goal_errors,
     last_second,
+    loop_estimates,
+    mean_of_known,
     pose_difference,
+    robot_pose,
 )
+from laglab.results.run import Run
 from laglab.scenario import Target
 
 Array = NDArray[np.float64]
@@ -36,6 +40,18 @@ class Record(NamedTuple):
     diverged: Array
     """(robots,), the tick at which the run ended because the estimate had diverged; NaN: it went
     on to its last tick."""
+
+
+def record_of(done: Run, claimed: Array | None = None) -> Record:
+    """Of one robot, with what its station claimed (ticks, 3, 3)."""
+    trace, diverged = done.trace, done.summary.outcome == "diverged"
+    return Record(
+        robot_pose(trace)[np.newaxis],
+        loop_estimates(trace)[np.newaxis],
+        None if claimed is None else claimed[np.newaxis],
+        np.stack([trace["v"], trace["omega"]], axis=1)[np.newaxis],
+        np.array([trace["tick"][-1] if diverged else np.nan]),
+    )
 
 
 class Judgements(NamedTuple):
@@ -113,18 +129,12 @@ def _settled(there: NDArray[np.bool_]) -> Array:
 def _of_estimates(
     truth: Array, estimates: Array | None, claimed: Array | None, m: int
 ) -> tuple[Array, Array]:
-    nothing = np.full(len(truth), np.nan)
+    nothing = np.full((len(truth), 3), np.nan)
     if estimates is None:
-        return np.full((len(truth), 3), np.nan), nothing
+        return nothing, nothing[:, 0]
     error = pose_difference(estimates[:, m:], truth[:, m:])
     rms = RmsError()
     rms.add(error)
-    return rms.values(), nothing if claimed is None else _mean(nees(error, claimed[:, m:]))
-
-
-def _mean(values: Array) -> Array:
-    """Along the ticks, where there is a value; NaN where there is none."""
-    missing = np.isnan(values)
-    with np.errstate(invalid="ignore", over="ignore"):
-        mean: Array = np.where(missing, 0.0, values).sum(axis=1) / (~missing).sum(axis=1)
-    return mean
+    return rms.values(), nothing if claimed is None else mean_of_known(
+        nees(error, claimed[:, m:]), axis=1
+    )
