@@ -9,10 +9,10 @@ import pytest
 
 import laglab
 from laglab.results.nees import nees
-from laglab.results.target import Target
+from laglab.scenario import Target
+from laglab.studies.judged import Judge, Stretch, judgements
 from laglab.studies.sweep.cell import Cell
 from laglab.studies.sweep.compute import computed
-from laglab.studies.sweep.judged import Judge, Stretch, judgements
 from laglab.studies.sweep.loading import load_study
 from laglab.studies.sweep.ways import how
 

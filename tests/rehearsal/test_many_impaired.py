@@ -10,8 +10,7 @@ import laglab
 from laglab.results.numbers import has_converged
 from laglab.runs.inline import InlineLink
 from laglab.scenario import load
-from laglab.studies.many import run_many, why_one_by_one
-from laglab.studies.schedule import schedule_of
+from laglab.studies.many import run_many, schedule_of, why_one_by_one
 
 from .many_kept import furthest, kept
 

@@ -13,7 +13,6 @@ from laglab.errors import ScenarioError
 from laglab.results.figures import draw_run, draw_runs
 from laglab.results.report import report_html
 from laglab.results.table import summary_rows
-from laglab.results.target import target
 from laglab.scenario import load
 from laglab.studies.many import why_one_by_one
 from laglab.studies.sweep.one_by_one import judged_alone
@@ -178,6 +177,6 @@ def test_an_option_that_tracking_does_not_have(
 
 
 def test_the_target_of_a_run_without_a_path_is_its_goal() -> None:
-    told = target(load("lab", {"goal": (1.0, 2.0, 3.0)}))
+    told = load("lab", {"goal": (1.0, 2.0, 3.0)}).target
     assert told.poses(np.arange(3.0)).tolist() == [[1.0, 2.0, 3.0]] * 3
     assert told.outline().tolist() == [[1.0, 2.0]]

@@ -18,10 +18,10 @@ from laglab.studies.rivals import (
     Trial,
     bounds,
     links_of,
+    scores,
     trials,
     tried,
 )
-from laglab.studies.rivals_report import scores
 
 ROOT = Path(__file__).parents[2]
 

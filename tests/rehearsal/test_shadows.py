@@ -1,6 +1,9 @@
 """Several filters in one run: the first in the loop, the others on the same record."""
 
+import numpy as np
 import pytest
+
+from laglab.results.shadows import beside
 
 
 def test_the_first_drives_and_all_are_compared(rehearsed, tmp_path, capsys):
@@ -42,3 +45,9 @@ def test_the_station_reports_delays_speed_and_warnings(laglab, tmp_path, transpo
     assert warning.startswith("tick 20: popf's gain is 0.")
     assert " ".join(ended.stderr.split()).count(warning) == 1
     assert "p99" in ended.stdout
+
+
+def test_what_was_said_of_ticks_that_the_trace_lacks_is_left_out() -> None:
+    said = {"tick": np.arange(4.0), **dict.fromkeys(("x", "y", "theta"), np.arange(4.0))}
+    columns = beside({"tick": np.array([0.0, 2.0])}, said, "ekf")
+    assert columns["x_ekf"].tolist() == [0.0, 2.0]

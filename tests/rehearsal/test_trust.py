@@ -3,8 +3,7 @@
 import pytest
 
 from laglab.command import main
-from laglab.studies.trust import CONDITIONS, Fared, Trial, stations
-from laglab.studies.trust_report import scores
+from laglab.studies.trust import CONDITIONS, Fared, Trial, scores, stations
 
 
 def test_the_command_leaves_table_and_picture(tmp_path, capsys, monkeypatch):

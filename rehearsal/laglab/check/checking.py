@@ -2,19 +2,17 @@
 
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
-from typing import Any
 
 from laglab.check import estimator, law, plant
 from laglab.check.finding import Finding, findings
 from laglab.check.subject import KINDS, SHIPPED, Kind, maker_of
 from laglab.runs.plant import open_plant
-from laglab.runs.plant.brought import METHODS
+from laglab.runs.plant.brought import Watched
 from laglab.scenario import Scenario, changed
-from laglab_control import ESTIMATORS, Circle, ConfigError, Law, PluginFailedError, PolarLaw
+from laglab_control import ESTIMATORS, Circle, ConfigError, Law, PolarLaw
 from laglab_control.estimators.family import estimator_kind
 from laglab_control.laws import brought_law, tracking_law
-from laglab_control.plugins import called, find_plugin, made, refuse_misfit, shown
-from laglab_gateway import Plant, Reading
+from laglab_control.plugins import find_plugin
 
 Options = Mapping[str, object]
 
@@ -95,38 +93,5 @@ def _shipped(name: str, options: dict[str, object], opened: ExitStack) -> plant.
 
 
 def _plant(name: str, options: dict[str, object]) -> plant.Subject:
-    maker = maker_of("plant", name)
-
-    def make() -> Plant:
-        one = made(name, maker, plant.SAMPLE_TIME, plant.START, plant.SEED, **options)
-        for method, parameters in METHODS.items():
-            refuse_misfit(name, one, method, *parameters)
-        return Watched(name, one)
-
-    return plant.Subject(make)
-
-
-class Watched(Plant):
-    """A plant that somebody brought: what fails in it is a line. Raises PluginFailedError."""
-
-    def __init__(self, name: str, one: Any) -> None:
-        self._name, self._one = name, one
-
-    def read(self) -> Reading:
-        """Its answer as a reading."""
-        answer = called(self._name, self._one, "read")
-        try:
-            return Reading(*map(float, answer))
-        except (TypeError, ValueError):
-            wanted = ", ".join(Reading._fields)
-            raise PluginFailedError(
-                f"{self._name}.read must answer {wanted}, not {shown(answer)}"
-            ) from None
-
-    def step(self, v: float, omega: float) -> None:
-        """One tick."""
-        called(self._name, self._one, "step", v, omega)
-
-    def place(self, x: float, y: float, theta: float) -> None:
-        """Elsewhere."""
-        called(self._name, self._one, "place", x, y, theta)
+    told = plant.SAMPLE_TIME, plant.START, plant.SEED
+    return plant.Subject(lambda: Watched.made(name, *told, options))

@@ -5,13 +5,14 @@ from typing import Annotated
 
 import typer
 
+from laglab.commands.options import RunsArgument
 from laglab.extras import DRAWING, require
 from laglab.results.figures import animation_place, save_animation
 from laglab.results.run import open_run
 
 
 def animate(
-    runs: Annotated[list[Path], typer.Argument(metavar="DIR...", help="What runs left.")],
+    runs: RunsArgument,
     out: Annotated[
         Path, typer.Option("--out", metavar="FILE", help="The moving picture, a GIF.")
     ] = Path("runs.gif"),

@@ -37,10 +37,9 @@ def check(
     except ScenarioError as error:
         raise ScenarioError(str(error).replace("--set", "--option")) from None
     kind, found = checked_apart(CheckOrder(name, as_, tuple(option or ())))
-    console = terminal()
-    console.print(findings_table(found), highlight=False)
+    terminal().print(findings_table(found), highlight=False)
     held = all_hold(found)
     article = "an" if kind == "estimator" else "a"
     verdict = "keeps" if held else "does not keep"
-    console.print(f"{name} {verdict} the interface of {article} {kind}", highlight=False)
+    print(f"{name} {verdict} the interface of {article} {kind}")
     raise typer.Exit(0 if held else FAILED)

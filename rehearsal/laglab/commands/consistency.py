@@ -1,22 +1,20 @@
 """``laglab consistency``."""
 
-import os
 from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from laglab.commands.figure import WidthOption
-from laglab.commands.options import on_scenario
+from laglab.commands.on_scenario import on_scenario
+from laglab.commands.options import PictureOption, WidthOption, WorkersOption, checked
 from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, require
 from laglab.progress import tracked
 from laglab.results.figures import picture_place, save
 from laglab.scenario import Scenario
 from laglab.scenario.tables.estimator import COMPARABLE, comparable
-from laglab.studies.consistency import nth, samples, verdict
-from laglab.studies.consistency_report import consistency_table, draw_consistency
+from laglab.studies.consistency import consistency_table, draw_consistency, nth, samples, verdict
 from laglab.tables import terminal
 
 JUDGED = ("ekf", "popf", "popf-exact", "delayed-ekf")
@@ -39,10 +37,8 @@ def consistency(
             autocompletion=lambda: COMPARABLE,
         ),
     ] = None,
-    workers: Annotated[int, typer.Option(min=0, max=256, help="Processes; 0: one a core.")] = 0,
-    out: Annotated[Path, typer.Option("--out", metavar="FILE", help="The picture.")] = Path(
-        "consistency.png"
-    ),
+    workers: WorkersOption = 0,
+    out: PictureOption = Path("consistency.png"),
     width: WidthOption = "two",
 ) -> None:
     """Hold what each filter claims against its errors, over seeds.
@@ -51,16 +47,15 @@ def consistency(
     """
     require(REHEARSING)
     picture_place(out)
-    names = [_known(name) for name in judged or JUDGED]
+    names = [checked("--judge", comparable, name) for name in judged or JUDGED]
     _check(scenario, seeds)
-    runs = samples(scenario, names, seeds, workers or os.cpu_count() or 1)
+    runs = samples(scenario, names, seeds, workers)
     got = list(tracked(runs, seeds, "consistency", "seed"))
     m = scenario.link.m
     verdicts = [verdict(name, [sample[name] for sample in got], m) for name in names]
-    console = terminal()
-    console.print(consistency_table(scenario, verdicts, seeds))
+    terminal().print(consistency_table(scenario, verdicts, seeds))
     save(draw_consistency(scenario, verdicts, width), out)
-    console.print(f"picture in {out}", highlight=False)
+    print(f"picture in {out}")
 
 
 def _check(scenario: Scenario, seeds: int) -> None:
@@ -69,10 +64,3 @@ def _check(scenario: Scenario, seeds: int) -> None:
     if scenario.must_end() < m:
         raise ScenarioError(f"{scenario.name}: the run is over before a measurement has arrived")
     nth(scenario, seeds - 1)
-
-
-def _known(name: str) -> str:
-    try:
-        return comparable(name)
-    except ValueError as error:
-        raise ScenarioError(f"--judge: {error}") from None

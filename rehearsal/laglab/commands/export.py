@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from laglab.commands.options import RunArgument
 from laglab.export import FormatName
 from laglab.export import export as write
 from laglab.progress import status
@@ -12,7 +13,7 @@ from laglab.results.run import open_run
 
 
 def export(
-    run: Annotated[Path, typer.Argument(metavar="DIR", help="What a run left.")],
+    run: RunArgument,
     format: Annotated[  # noqa: A002 as it is on the command line
         FormatName, typer.Option("--format", help="What the other program reads.")
     ],

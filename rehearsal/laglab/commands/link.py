@@ -5,9 +5,8 @@ from typing import Annotated
 
 import typer
 
-from laglab.commands.figure import WidthOption
 from laglab.commands.group import group
-from laglab.commands.run import KeyOption
+from laglab.commands.options import KeyOption, WidthOption
 from laglab.extras import DRAWING, require
 from laglab.link.advice import suggestions
 from laglab.link.errors import LinkPlaceError
@@ -123,7 +122,7 @@ def probe(
         )
     write_link_log(measured, out)
     print_measured(measured, terminal())
-    typer.echo(out)
+    print(out)
 
 
 @app.command("import")
@@ -180,7 +179,7 @@ def import_(
         measured = read_link(file, How(sizes, interval, clocks_within, back))
         write_link_log(measured, out)
         print_measured(measured, terminal())
-    typer.echo(out)
+    print(out)
 
 
 @app.command("fit")
@@ -240,8 +239,8 @@ def fit(
     margin = delay_margin(law, interval) if isinstance(law, PolarLaw) else None
     console.print(choices_table(found, margin))
     for line in suggestions(found):
-        console.print(line, highlight=False)
-    typer.echo(out)
+        print(line)
+    print(out)
     if figure is not None:
         save(draw_fit(found, width), figure)
-        typer.echo(figure)
+        print(figure)

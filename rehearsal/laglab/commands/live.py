@@ -11,7 +11,7 @@ from laglab.extras import SEEING, require
 from laglab.live import LivePage, live_page, place_of
 from laglab.results.complete import Way
 from laglab.scenario import Scenario
-from laglab.tables import terminal
+from laglab.tables import say
 
 LiveOption = Annotated[
     str | None,
@@ -36,10 +36,9 @@ def shown_live(
     require(SEEING)
     origin = f"Side: {way.side}; over {way.transport}; plant {way.plant}; seed {scenario.seed}."
     with live_page(scenario, place_of(live or "0"), origin, way.side == "station") as page:
-        errors = terminal(stderr=True)
         if warning := page.warning:
-            errors.print(f"warning: {warning}", highlight=False, soft_wrap=True)
-        errors.print(f"live at {page.address}", highlight=False, soft_wrap=True)
+            say(f"warning: {warning}")
+        say(f"live at {page.address}")
         if open_:
             webbrowser.open(page.address)
         yield page

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from laglab.commands.options import PictureOption
 from laglab.extras import MAPPING, require
 from laglab.results.figures import picture_place, save
 from laglab.studies.maps import draw_study, read_runs
@@ -21,9 +22,7 @@ def map_study(
             help="What is drawn; may be repeated. converged, rms_x and others by default.",
         ),
     ] = None,
-    out: Annotated[
-        Path, typer.Option("--out", metavar="FILE", help="The picture: PNG, PDF, SVG and others.")
-    ] = Path("map.png"),
+    out: PictureOption = Path("map.png"),
 ) -> None:
     """Draw a study's results again, without running it.
 

@@ -7,7 +7,6 @@ import typer
 
 from laglab.check import Kind
 from laglab.new import make_package
-from laglab.tables import terminal
 
 
 def new(
@@ -22,7 +21,6 @@ def new(
     A module, an entry point by which laglab finds it, and a test that runs `laglab check`.
     """
     made = make_package(kind, name, out)
-    console = terminal()
-    console.print(f"made {made.folder}; and now:", highlight=False, soft_wrap=True)
+    print(f"made {made.folder}; and now:")
     for command in made.commands:
-        console.print(f"    {command}", highlight=False, soft_wrap=True)
+        print(f"    {command}")

@@ -1,137 +1,66 @@
-"""The options that every command on a scenario shares: command line beats file."""
+"""What several commands take: one word and one help text for it."""
 
-import inspect
-from collections.abc import Callable, Iterator
-from typing import Annotated, Any, NamedTuple
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Annotated
 
 import typer
 
-from laglab.scenario import assignment, load, read_timeline, shipped_names
-from laglab.scenario.keys import NO_UNIT, rows
-from laglab_control import ESTIMATORS
+from laglab.errors import ScenarioError
+from laglab.results.figures import Width
 
-ScenarioArgument = Annotated[
-    str,
-    typer.Argument(
-        metavar="SCENARIO",
-        help="A shipped scenario's name, or a TOML file.",
-        autocompletion=shipped_names,
-    ),
+RunArgument = Annotated[Path, typer.Argument(metavar="DIR", help="What a run left.")]
+RunsArgument = Annotated[list[Path], typer.Argument(metavar="DIR...", help="What runs left.")]
+PictureOption = Annotated[
+    Path, typer.Option("--out", metavar="FILE", help="The picture: PNG, PDF, SVG and others.")
 ]
-EstimatorsOption = Annotated[
-    list[str] | None,
+WidthOption = Annotated[
+    Width,
+    typer.Option(help="As wide as one column of a journal's page (3.3 in) or as two (7 in)."),
+]
+WorkersOption = Annotated[int, typer.Option(min=0, max=1024, help="Processes; 0: one a core.")]
+
+KeyOption = Annotated[
+    Path | None,
+    typer.Option("--key", metavar="FILE", help="Sign every frame; `laglab protocol keygen`."),
+]
+PlantOption = Annotated[
+    str | None,
     typer.Option(
-        "--estimator",
-        metavar="NAME",
-        help=f"The filter in the loop; further ones shadow it: {', '.join(ESTIMATORS)}, a plug-in "
-        "or module:Class.",
-        autocompletion=lambda: list(ESTIMATORS),
+        metavar="URL",
+        help="The real robot's link, such as serial:///dev/ttyX:BAUD: its clock sets the pace.",
     ),
 ]
-
-POSE = "X,Y,THETA"
-
-
-class Own(NamedTuple):
-    """A key's own option: its type on the command line, and how it is written."""
-
-    type: object
-    name: str
-    metavar: str | None = None
-
-
-OWN: dict[str, Own] = {
-    "link.command_delay": Own(int | None, "-n"),
-    "link.measurement_delay": Own(int | None, "-m"),
-    "start": Own(str | None, "--start", POSE),
-    "goal": Own(str | None, "--goal", POSE),
-    "seed": Own(int | None, "--seed"),
-    "noise": Own(bool | None, "--noise/--no-noise"),
-    "duration": Own(float | None, "--duration"),
-    "estimator.initial_covariance": Own(float | None, "--p0"),
-    "estimator.initial_estimate": Own(str | None, "--initial-estimate", POSE),
-    "law.kind": Own(str | None, "--law", "NAME"),
-    "law.path": Own(str | None, "--path", "PATH"),
-    "law.v_max": Own(float | None, "--v-max"),
-    "law.omega_max": Own(float | None, "--omega-max"),
-    "law.goal_tolerance": Own(float | None, "--goal-tolerance"),
-    "pace": Own(str | None, "--pace"),
-    "speed": Own(float | None, "--speed"),
-    "silence_timeout": Own(float | None, "--silence"),
-    "plant.fmi": Own(int | None, "--fmi"),
-}
-"""Dotted key of a scenario → its option, which says what the key says."""
-OF_SEVERAL_KEYS: dict[str, Any] = {
-    "estimator": EstimatorsOption,
-    "timeline": Annotated[
-        str | None,
-        typer.Option(
-            "--timeline",
-            metavar="FILE",
-            help="What the link does when: TOML, or a link.csv, of a run or measured; a longer run "
-            "goes through it again.",
-        ),
-    ],
-    "set": Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="KEY=VALUE",
-            help="Any key of a scenario, such as link.command.loss=0.1; may be repeated. "
-            "It beats the file, and a key's own option beats it.",
-        ),
-    ],
-}
+PlantKeyOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--plant-key", metavar="FILE", help="Sign every frame on the real robot's link, too."
+    ),
+]
+OutOption = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Where the results go; runs/SCENARIO otherwise."),
+]
+ForceOption = Annotated[
+    bool, typer.Option("--force", help="Take the place of another run's results in --out.")
+]
+ReportOption = Annotated[
+    bool, typer.Option("--report", help="Leave report.html, too; `laglab report` says what it is.")
+]
 
 
-def _overrides(options: dict[str, Any]) -> dict[str, object]:
-    """What beats the file; takes the options out that say it."""
-    own = {key: options.pop(_parameter(key)) for key in OWN}
-    own = {key: value for key, value in own.items() if value is not None}
-    if names := options.pop("estimator"):
-        own |= {"estimator.kind": names[0]}
-        own |= {"estimator.compare": names[1:]} if names[1:] else {}
-    if timeline := options.pop("timeline"):
-        own |= read_timeline(timeline)
-    told = dict(map(assignment, options.pop("set") or []))
-    return {key: value for key, value in told.items() if key not in own} | own
+def chosen(option: str, named: Sequence[str] | None, known: Iterable[str]) -> list[str]:
+    """Those named, each once; all that are known where none is. Raises ScenarioError."""
+    names = list(known)
+    for name in named or ():
+        if name not in names:
+            raise ScenarioError(f"{option}: {name!r} is not one of {', '.join(names)}")
+    return list(dict.fromkeys(named)) if named else names
 
 
-def _parameter(key: str) -> str:
-    return key.replace(".", "_")
-
-
-def _parameters(by_default: object) -> Iterator[inspect.Parameter]:
-    """SCENARIO, and the options that override it."""
-    keyword = inspect.Parameter.KEYWORD_ONLY
-    yield inspect.Parameter("scenario", keyword, default=by_default, annotation=ScenarioArgument)
-    for name, hint in OF_SEVERAL_KEYS.items():
-        yield inspect.Parameter(name, keyword, default=None, annotation=hint)
-    said = {row.place: row.key for row in rows()}
-    for key, own in OWN.items():
-        unit = said[key].unit
-        text = said[key].sentence + (f" [{unit}]" if unit != NO_UNIT else "")
-        option = typer.Option(None, own.name, metavar=own.metavar, help=text, show_default=False)
-        yield inspect.Parameter(_parameter(key), keyword, default=option, annotation=own.type)
-
-
-def on_scenario(
-    command: Callable[..., None], by_default: object = inspect.Parameter.empty
-) -> Callable[..., None]:
-    """Give ``command(scenario, …)`` the SCENARIO argument and the options that override it.
-
-    `by_default` is the SCENARIO where none is named, if that is allowed.
-    """
-    own = list(inspect.signature(command).parameters.values())[1:]
-
-    def wrapper(scenario: str, **options: Any) -> None:
-        overrides = _overrides(options)
-        command(load(scenario, overrides, lambda text: typer.echo(text, err=True)), **options)
-
-    keyword = inspect.Parameter.KEYWORD_ONLY
-    parameters = [*_parameters(by_default), *(each.replace(kind=keyword) for each in own)]
-    wrapper.__name__ = command.__name__
-    wrapper.__doc__ = command.__doc__
-    wrapper.__annotations__ = {item.name: item.annotation for item in parameters}
-    wrapper.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
-    return wrapper
+def checked(option: str, check: Callable[[str], str], name: str) -> str:
+    """The name, of which the check raises no ValueError. Raises ScenarioError."""
+    try:
+        return check(name)
+    except ValueError as error:
+        raise ScenarioError(f"{option}: {error}") from None

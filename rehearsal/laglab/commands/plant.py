@@ -45,7 +45,7 @@ def check(
     fmu = FmuFile.read(Path(file)) if Path(file).suffix == ".fmu" else None
     proposal = proposed(fmu) if fmu else Proposal()
     if fmu:
-        console.print(headed(fmu), highlight=False, soft_wrap=True)
+        print(headed(fmu))
         console.print(offered(fmu, proposal), highlight=False)
     scenario = _of_fmu(fmu.path, proposal.fields(), overrides) if fmu else load(file, overrides)
     check_plant(scenario)

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from laglab.commands.group import group
-from laglab.commands.run import KeyOption
+from laglab.commands.options import KeyOption
 from laglab.progress import status
 from laglab.results.whole import whole_file
 from laglab.results.writable import file_place, folder_place

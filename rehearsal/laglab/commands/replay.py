@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from laglab.commands.figure import WidthOption
+from laglab.commands.options import WidthOption
 from laglab.errors import ScenarioError
 from laglab.extras import DRAWING, SEEING, require
 from laglab.results.figures import save
@@ -76,7 +76,7 @@ def replay(
     if report:
         _report(replayed_run(tlog.parent, replays), directory)
     terminal().print(replays_table(replays, trace))
-    terminal().print(f"results in {out}", highlight=False, soft_wrap=True)
+    print(f"results in {out}")
 
 
 def _report(run: Run, directory: Path) -> None:

@@ -5,13 +5,14 @@ from typing import Annotated
 
 import typer
 
+from laglab.commands.options import RunsArgument
 from laglab.extras import SEEING, require
 from laglab.results.run import open_run
 from laglab.results.writable import file_place
 
 
 def report(
-    runs: Annotated[list[Path], typer.Argument(metavar="DIR...", help="What runs left.")],
+    runs: RunsArgument,
     out: Annotated[
         Path, typer.Option("--out", metavar="FILE", help="The page, one HTML file.")
     ] = Path("report.html"),

@@ -1,15 +1,13 @@
 """``laglab rivals``."""
 
-import os
-from collections.abc import Iterable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from laglab.commands.figure import WidthOption
-from laglab.commands.options import on_scenario
+from laglab.commands.on_scenario import on_scenario
+from laglab.commands.options import PictureOption, WidthOption, WorkersOption, chosen
 from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, require
 from laglab.progress import tracked
@@ -17,8 +15,17 @@ from laglab.results.figures import picture_place, save
 from laglab.runs.plant import check_plant
 from laglab.runs.station_side import check_parts
 from laglab.scenario import Scenario
-from laglab.studies.rivals import LINKS, OWN_LINK, STRATEGIES, links_of, outcomes, trials
-from laglab.studies.rivals_report import draw_rivals, rivals_table, scores
+from laglab.studies.rivals import (
+    LINKS,
+    OWN_LINK,
+    STRATEGIES,
+    draw_rivals,
+    links_of,
+    outcomes,
+    rivals_table,
+    scores,
+    trials,
+)
 from laglab.tables import terminal
 
 
@@ -44,10 +51,8 @@ def rivals(
             autocompletion=lambda: list(STRATEGIES),
         ),
     ] = None,
-    workers: Annotated[int, typer.Option(min=0, max=256, help="Processes; 0: one a core.")] = 0,
-    out: Annotated[Path, typer.Option("--out", metavar="FILE", help="The picture.")] = Path(
-        "rivals.png"
-    ),
+    workers: WorkersOption = 0,
+    out: PictureOption = Path("rivals.png"),
     width: WidthOption = "two",
 ) -> None:
     """Let the ways to live with a link meet on the same links.
@@ -58,17 +63,16 @@ def rivals(
     require(REHEARSING)
     picture_place(out)
     _can_be_repeated(scenario)
-    links = _known("--on", on, links_of(scenario))
-    strategies = _known("--only", only, STRATEGIES)
+    links = chosen("--on", on, links_of(scenario))
+    strategies = chosen("--only", only, STRATEGIES)
     jobs = trials(scenario, links, strategies, seeds)
-    runs = outcomes(jobs, workers or os.cpu_count() or 1)
+    runs = outcomes(jobs, workers)
     got = scores(list(tracked(runs, len(jobs), "rivals", "run")))
     n, m = scenario.link.command_delay, scenario.link.measurement_delay
     title = f"{scenario.name}, n = {n}, m = {m}, {seeds} runs each"
-    console = terminal()
-    console.print(rivals_table(title, got, links, strategies))
+    terminal().print(rivals_table(title, got, links, strategies))
     save(draw_rivals(title, got, links, strategies, width), out)
-    console.print(f"picture in {out}", highlight=False)
+    print(f"picture in {out}")
 
 
 def _can_be_repeated(scenario: Scenario) -> None:
@@ -78,11 +82,3 @@ def _can_be_repeated(scenario: Scenario) -> None:
         raise ScenarioError(f"{scenario.name}: pace: must be lockstep here, not {scenario.pace}")
     check_parts(scenario)
     check_plant(scenario)
-
-
-def _known(option: str, named: Sequence[str] | None, known: Iterable[str]) -> list[str]:
-    names = list(known)
-    for name in named or ():
-        if name not in names:
-            raise ScenarioError(f"{option}: {name!r} is not one of {', '.join(names)}")
-    return list(dict.fromkeys(named)) if named else names

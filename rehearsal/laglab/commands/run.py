@@ -2,13 +2,20 @@
 
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from laglab.commands.live import LiveOption, OpenOption, shown_live
-from laglab.commands.options import on_scenario
+from laglab.commands.on_scenario import on_scenario
+from laglab.commands.options import (
+    ForceOption,
+    KeyOption,
+    OutOption,
+    PlantKeyOption,
+    PlantOption,
+    ReportOption,
+)
 from laglab.commands.verdict import conclude
 from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, SEEING, require
@@ -22,35 +29,8 @@ from laglab.runs.station_side import check_parts
 from laglab.runs.waiting import in_time
 from laglab.runs.whole import run_into
 from laglab.scenario import Scenario
+from laglab.tables import say
 from laglab_control import is_module_class
-
-KeyOption = Annotated[
-    Path | None,
-    typer.Option("--key", metavar="FILE", help="Sign every frame; `laglab protocol keygen`."),
-]
-PlantOption = Annotated[
-    str | None,
-    typer.Option(
-        metavar="URL",
-        help="The real robot's link, such as serial:///dev/ttyX:BAUD: its clock sets the pace.",
-    ),
-]
-PlantKeyOption = Annotated[
-    Path | None,
-    typer.Option(
-        "--plant-key", metavar="FILE", help="Sign every frame on the real robot's link, too."
-    ),
-]
-OutOption = Annotated[
-    Path | None,
-    typer.Option("--out", metavar="DIR", help="Where the results go; runs/SCENARIO otherwise."),
-]
-ForceOption = Annotated[
-    bool, typer.Option("--force", help="Take the place of another run's results in --out.")
-]
-ReportOption = Annotated[
-    bool, typer.Option("--report", help="Leave report.html, too; `laglab report` says what it is.")
-]
 
 
 @on_scenario
@@ -83,7 +63,7 @@ def run(
     if plant is None:
         in_time(scenario.plant.called, partial(check_plant, scenario))
     if said := wrapped_replay(scenario):
-        typer.echo(said, err=True)
+        say(said)
     way = Way("both", transport, plant or scenario.plant.called)
     with shown_live(scenario, way, live, open_) as page:
         directory = place(scenario, out, force)

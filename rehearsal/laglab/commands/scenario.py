@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from laglab.commands.options import on_scenario
+from laglab.commands.on_scenario import on_scenario
 from laglab.scenario import Scenario
 
 

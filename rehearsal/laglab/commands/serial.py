@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from laglab.tables import say
 from laglab_protocol import SerialPair
 
 
@@ -17,12 +18,12 @@ def serial(
 ) -> None:
     """Make two serial ports joined by a cable, until Ctrl-C."""
     with SerialPair(str(path_1), str(path_2), baud) as pair:
-        typer.echo(f"{path_1} and {path_2} are joined at {baud} baud; Ctrl-C ends it", err=True)
+        say(f"{path_1} and {path_2} are joined at {baud} baud; Ctrl-C ends it")
         try:
             pair.carry()
         finally:
             for way, names in zip(pair.lanes, ((path_1, path_2), (path_2, path_1)), strict=True):
-                typer.echo(_report(*names, way.carried, way.overrun))
+                print(_report(*names, way.carried, way.overrun))
 
 
 def _report(source: Path, destination: Path, carried: int, overrun: int) -> str:

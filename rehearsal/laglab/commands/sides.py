@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from laglab.commands.live import LiveOption, OpenOption, shown_live
-from laglab.commands.options import on_scenario
-from laglab.commands.run import (
+from laglab.commands.on_scenario import on_scenario
+from laglab.commands.options import (
     ForceOption,
     KeyOption,
     OutOption,

@@ -37,14 +37,14 @@ def soak(
     require(REHEARSING)
     require_terminals("soak")
     require_processes()
-    console = terminal()
 
     def tell(lines: list[str]) -> None:
         for line in lines:
-            console.print(line, highlight=False, soft_wrap=True)
+            print(line)
 
     command = f"laglab soak --minutes {minutes:g} --seed {seed}"
-    place = _place(out if turn is None else out / f"again-{turn}")  # the soak's report stays
+    own = out if turn is None else out / f"again-{turn}"  # the soak's report stays
+    place = folder_place("--out", own)
     going = Soak(command if turn is None else repeated(seed, turn), seed, place, tell)
     try:
         if turn is None:
@@ -56,10 +56,6 @@ def soak(
         going.write()
     report = going.report()
     for table in summary_tables(report):
-        console.print(table)
+        terminal().print(table)
     tell([verdict(report), f"report in {place}"])
     raise typer.Exit(FAILED if report.tally.failed else 0)
-
-
-def _place(out: Path) -> Path:
-    return folder_place("--out", out)

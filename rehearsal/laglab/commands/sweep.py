@@ -5,18 +5,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.table import Table
 
+from laglab.commands.options import WorkersOption
 from laglab.extras import SEEING, STUDYING, require
 from laglab.progress import progress_of_study
 from laglab.results.place import REPORT_FILE
 from laglab.scenario import assignment
-from laglab.tables import terminal
+from laglab.tables import plain_table, say, terminal
 
 if TYPE_CHECKING:
     from laglab.studies.workers import Executor
-
-MOST_WORKERS = 1024
 
 
 def sweep(
@@ -35,9 +33,7 @@ def sweep(
         list[str] | None,
         typer.Option("--set", metavar="KEY=VALUE", help="A key of its scenario; may be repeated."),
     ] = None,
-    workers: Annotated[
-        int, typer.Option(min=0, max=MOST_WORKERS, help="Processes; 0: one a core.")
-    ] = 0,
+    workers: WorkersOption = 0,
     scheduler: Annotated[
         str | None,
         typer.Option(metavar="URL", help="A dask scheduler, tcp://HOST:PORT; local: one of ours."),
@@ -71,32 +67,32 @@ def sweep(
     folder = Folder.made(out or Path("studies") / chosen.name, chosen)
     plan = planned(chosen, None if force else folder)
     for line in strangers_told(chosen, folder):
-        typer.echo(line, err=True)
+        say(line)
     with (
         progress_of_study(chosen.name, plan.runs, plan.seconds) as done,
         _workers(scheduler, workers) as executor,
     ):
         compute(chosen, folder, executor, done, force)
     said = summary(chosen, folder, plan)
-    terminal().print(said, highlight=False)
+    print(said)
     if report:
         from laglab.studies.maps.page import save_study_page
 
         save_study_page(chosen, folder.path, said.splitlines(), folder.path / REPORT_FILE)
-        terminal().print(f"report in {folder.path / REPORT_FILE}", highlight=False, soft_wrap=True)
+        print(f"report in {folder.path / REPORT_FILE}")
 
 
 def _workers(scheduler: str | None, workers: int) -> "AbstractContextManager[Executor]":
     from laglab.studies.sweep.cluster import cluster
-    from laglab.studies.sweep.sweeping import own_processes
+    from laglab.studies.workers import Processes
 
-    return cluster(scheduler, workers) if scheduler else own_processes(workers)
+    return cluster(scheduler, workers) if scheduler else Processes(workers)
 
 
 def _list() -> None:
     from laglab.studies.sweep.loading import shipped_studies
 
-    table = Table("name", "runs", "over", "what it shows", box=None)
+    table = plain_table("name", "runs", "over", "what it shows")
     for name, study in shipped_studies().items():
         table.add_row(name, str(study.runs), ", ".join(study.grid), study.description)
     terminal().print(table)

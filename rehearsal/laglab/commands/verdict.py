@@ -15,7 +15,7 @@ from laglab.results.run import Run
 from laglab.results.table import results_table, warnings
 from laglab.runs.ending import Ending
 from laglab.scenario import Scenario
-from laglab.tables import terminal
+from laglab.tables import say, terminal
 
 
 def conclude(
@@ -43,7 +43,7 @@ def conclude(
     except ResultsError as error:
         if not ending.problem:
             raise
-        print(f"warning: {error}", file=sys.stderr)
+        say(f"warning: {error}")
     raise typer.Exit(ending.exit_code)
 
 
@@ -59,16 +59,15 @@ def report_on(run: Run) -> None:
     if run.directory:
         place = run.directory / REPORT_FILE
         save_report([run], place)
-        terminal().print(f"report in {place}", highlight=False, soft_wrap=True)
+        print(f"report in {place}")
 
 
 def _show(run: Run) -> None:
     """Table, warnings, verdict and place."""
-    console, errors = terminal(), terminal(stderr=True)
-    console.print(results_table(run.summary))
+    terminal().print(results_table(run.summary))
     for warning in warnings(run.summary):
-        errors.print(f"warning: {warning}", highlight=False, soft_wrap=True)
-    console.print(run.summary.verdict, highlight=False, soft_wrap=True)
-    console.print(f"results in {run.directory}", highlight=False, soft_wrap=True)
+        say(f"warning: {warning}")
+    print(run.summary.verdict)
+    print(f"results in {run.directory}")
     if run.directory and not (run.directory / FIGURE_FILE).exists():
-        errors.print("no figure: matplotlib is not installed here", highlight=False)
+        say("no figure: matplotlib is not installed here")

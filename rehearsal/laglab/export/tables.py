@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab.errors import NoRunError
-from laglab.results.columns import Columns
+from laglab.results.columns import Columns, places
 from laglab.results.meaning import ARRIVALS, CLAIMS, LINK, SHADOW, TIMING, Column, tick_columns
 from laglab.results.run import Run
 from laglab_gateway import ARRIVALS_FILE, CLAIMS_FILE, LINK_FILE, TIMING_FILE, Trace
@@ -99,11 +99,9 @@ class _Beside:
         self._read_up_to(keys[-1])
         columns = {name: np.full(len(keys), np.nan) for name in self._renamed.values()}
         for piece in self._waiting:
-            rows = np.searchsorted(keys, piece[self.key])
-            rows[rows == len(keys)] = 0
-            there = keys[rows] == piece[self.key]
+            there, rows = places(keys, piece[self.key])
             for name, renamed in self._renamed.items():
-                columns[renamed][rows[there]] = piece[name][there]
+                columns[renamed][rows] = piece[name][there]
         self._waiting = [each for each in self._waiting if each[self.key][-1] > keys[-1]]
         return columns
 

@@ -21,7 +21,6 @@ from laglab.results.report.tables import (
     tick_columns,
     timing_columns,
 )
-from laglab.results.target import target
 from laglab.scenario import Scenario
 from laglab_gateway import ArrivalRow, ClaimRow, LinkRow, TimingRow, trace_of
 
@@ -57,7 +56,7 @@ def tables_in(rows: Rows, scenario: Scenario) -> Tables:
     arrivals = columns_of(rows.arrivals, ArrivalRow)
     Ts = scenario.sample_time
     return Tables(
-        tick_columns(trace_of(rows.trace), columns_of(rows.claims, ClaimRow), target(scenario)),
+        tick_columns(trace_of(rows.trace), columns_of(rows.claims, ClaimRow), scenario.target),
         arrival_columns(arrivals, "command"),
         arrival_columns(arrivals, "measurement"),
         joined([losses(columns_of(rows.link, LinkRow), Ts), refusals(arrivals)]),

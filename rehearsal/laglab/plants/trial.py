@@ -1,18 +1,16 @@
 """A plant, driven twice, each time in a process of its own: whatever it does, we are still here."""
 
 import math
-import pickle
-from queue import Empty, Queue
+from collections.abc import Iterator
 from time import perf_counter
 from typing import NamedTuple
 
 from msgspec import Struct
 
 from laglab.errors import LaglabError
-from laglab.runs.child import Inbox, Tell, started
-from laglab.runs.errors import SIDE_ERRORS
+from laglab.runs.answers import GaveUpError, NoAnswerError, answer_all, asked
+from laglab.runs.child import Tell
 from laglab.runs.plant import open_plant
-from laglab.runs.reports import Computed, Failed
 from laglab.scenario import Scenario
 from laglab_gateway import Plant, Reading
 
@@ -107,39 +105,30 @@ def tried(scenario: Scenario) -> Trial:
 
 
 def _in_a_child(scenario: Scenario) -> Drive:
-    inbox: Inbox = Queue()
     order = TrialOrder(scenario.to_toml())
-    with started("plant's", f"{__name__}:drive", order, inbox):
-        try:
-            _, report = inbox.get(timeout=PATIENCE)
-        except Empty:
-            raise PlantCheckError(
-                f"{scenario.plant.called} does not come back: {PATIENCE:g} s for "
-                f"{2 * PHASE:g} s of its time were not enough"
-            ) from None
-    match report:
-        case Computed(answer):
-            driven: Drive = pickle.loads(answer)
-            return driven
-        case Failed(reason):
-            raise PlantCheckError(reason)
-        case other:
-            raise PlantCheckError(f"{scenario.plant.called}: {getattr(other, 'how', other)}")
+    try:
+        with asked("plant's", f"{__name__}:drive", order, PATIENCE) as answer:
+            driven: Drive = answer()
+    except GaveUpError as error:
+        raise PlantCheckError(str(error)) from None
+    except NoAnswerError as error:
+        raise PlantCheckError(f"{scenario.plant.called}: {error}") from None
+    return driven
 
 
 def drive(order: TrialOrder, tell: Tell) -> None:
     """In the child."""
-    scenario = Scenario.from_toml(order.scenario)
+    answer_all(tell, _driven(Scenario.from_toml(order.scenario)))
+
+
+def _driven(scenario: Scenario) -> Iterator[Drive]:
     ticks = max(round(PHASE / scenario.sample_time), 1)
-    try:
-        with open_plant(scenario) as opened:
-            begun = perf_counter()
-            readings = _readings(opened.plant, ticks)
-            seconds = perf_counter() - begun
-            placed = _placed(opened.plant) if opened.placeable else None
-        tell(Computed(pickle.dumps(Drive(readings, seconds, placed, opened.warnings))))
-    except SIDE_ERRORS as error:
-        tell(Failed(str(error), begun=True))
+    with open_plant(scenario) as opened:
+        begun = perf_counter()
+        readings = _readings(opened.plant, ticks)
+        seconds = perf_counter() - begun
+        placed = _placed(opened.plant) if opened.placeable else None
+    yield Drive(readings, seconds, placed, opened.warnings)
 
 
 def _readings(plant: Plant, ticks: int) -> list[Reading]:

@@ -1,10 +1,10 @@
 """The tables that a run leaves besides its trace, column by column."""
 
 import csv
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
-from typing import get_type_hints
+from typing import TypeVar, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,11 +12,16 @@ from numpy.typing import NDArray
 from laglab.errors import NoRunError
 from laglab_gateway import Row
 
+Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[np.generic]]
 """An array per column; none of them has an entry where nothing was recorded."""
 
 AT_A_TIME = 5_000
 """Rows for which memory always has room."""
+
+T = TypeVar("T")
+Cell = TypeVar("Cell", bound=np.generic)
+Lines = list[list[str]]
 
 
 def columns_of(rows: Sequence[Row], kind: type[Row]) -> Columns:
@@ -36,31 +41,59 @@ def read_columns(path: Path, kind: type[Row]) -> Columns:
     return joined([columns_of([], kind), *column_pieces(path, kind)])
 
 
-def joined(pieces: Iterable[Columns]) -> Columns:
+def column_pieces(path: Path, kind: type[Row]) -> Iterator[Columns]:
+    """The same, so many rows at a time; a row that was cut short is left out."""
+    hints = get_type_hints(kind)
+    if path.exists():
+        yield from csv_pieces(path, tuple(hints), lambda lines: _parsed(lines, hints))
+
+
+def csv_pieces(path: Path, names: Sequence[str], parsed: Callable[[Lines], T]) -> Iterator[T]:
+    """What a CSV file of these columns holds, so many rows at a time. Raises NoRunError."""
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            lines = csv.reader(file)
+            if next(lines, None) != list(names):
+                raise NoRunError(f"{path}: expected the columns {','.join(names)}")
+            while piece := list(islice(lines, AT_A_TIME)):
+                yield parsed(piece)
+    except (OSError, ValueError, csv.Error) as error:
+        raise NoRunError(f"{path} cannot be read: {error}") from error
+
+
+def joined(pieces: Iterable[Mapping[str, NDArray[Cell]]]) -> dict[str, NDArray[Cell]]:
     """One after the other."""
     whole = list(pieces)
     return {name: np.concatenate([each[name] for each in whole]) for name in whole[0]}
 
 
-def column_pieces(path: Path, kind: type[Row]) -> Iterator[Columns]:
-    """The same, so many rows at a time; a row that was cut short is left out."""
-    if not path.exists():
-        return
-    hints = get_type_hints(kind)
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            lines = csv.reader(file)
-            if next(lines, None) != list(hints):
-                raise NoRunError(f"{path}: expected the columns {','.join(hints)}")
-            while piece := list(islice(lines, AT_A_TIME)):
-                if whole := [line for line in piece if len(line) == len(hints)]:
-                    yield _parsed(whole, hints)
-    except (OSError, ValueError, csv.Error) as error:
-        raise NoRunError(f"{path} cannot be read: {error}") from error
+def stride(rows: int, most: int) -> int:
+    """Every so manyth of the rows leaves no more than the most."""
+    return max(1, -(-rows // most))
 
 
-def _parsed(lines: list[list[str]], hints: Mapping[str, object]) -> Columns:
-    cells = zip(*lines, strict=True)
+def thinned(columns: Mapping[str, NDArray[Cell]], every: int) -> dict[str, NDArray[Cell]]:
+    """Every so manyth row; no view, which would keep all of them in memory."""
+    return {name: column[::every].copy() for name, column in columns.items()}
+
+
+def places(keys: Array, wanted: NDArray[np.generic]) -> tuple[NDArray[np.bool_], NDArray[np.intp]]:
+    """Which of the `wanted` are among the keys, which go up, and where."""
+    rows = np.searchsorted(keys, wanted.astype(float))
+    there = rows < len(keys)
+    there[there] = keys[rows[there]] == wanted[there]
+    return there, rows[there]
+
+
+def at_ticks(columns: Mapping[str, NDArray[Cell]], ticks: Array) -> dict[str, NDArray[Cell]]:
+    """The rows of these ticks."""
+    there, _ = places(ticks, columns["tick"])
+    return {name: column[there] for name, column in columns.items()}
+
+
+def _parsed(lines: Lines, hints: Mapping[str, object]) -> Columns:
+    whole = [line for line in lines if len(line) == len(hints)]
+    cells = zip(*whole, strict=True) if whole else ((),) * len(hints)
     return {
         name: np.array(column if hint is str else [cell or "nan" for cell in column]).astype(
             _dtype(hint)

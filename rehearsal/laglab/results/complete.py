@@ -12,6 +12,7 @@ from laglab.errors import RefusedError, RunError
 from laglab.results.columns import Columns, columns_of
 from laglab.results.digest import Digest, digest
 from laglab.results.figures import save_figure
+from laglab.results.following import followed
 from laglab.results.numbers import goal_errors, has_converged, robot_pose
 from laglab.results.run import Kept, Run
 from laglab.results.shadows import (
@@ -24,7 +25,6 @@ from laglab.results.shadows import (
     until_it_fails,
 )
 from laglab.results.summary import Errors, Final, Following, Side, Summary, write_summary
-from laglab.results.target import followed, target
 from laglab.runs.ending import Ending
 from laglab.scenario import Scenario
 from laglab.version import laglab_version
@@ -75,7 +75,7 @@ def complete(
         name: _shadowed(scenario, name, directory, failed) for name in scenario.estimator.compare
     }
     ending = replace(ending, warnings=(*ending.warnings, *failed))
-    following = followed(trace_pieces(directory / TRACE_FILE), target(scenario), numbers.rows)
+    following = followed(trace_pieces(directory / TRACE_FILE), scenario.target, numbers.rows)
     summary = summarise(scenario, way, ending, numbers, compared, following)
     write_summary(summary, directory)
     run = Run(scenario, summary, directory)
@@ -99,7 +99,7 @@ def keep(scenario: Scenario, way: Way, ending: Ending, recorder: MemoryRecorder)
         shadows[name] = collected(rows)
         compared[name] = shadow_error(rows, [trace], scenario.link.m)
     numbers = digest([trace], scenario.link.m)
-    following = followed([trace], target(scenario), numbers.rows)
+    following = followed([trace], scenario.target, numbers.rows)
     ending = replace(ending, warnings=(*ending.warnings, *failed))
     summary = summarise(scenario, way, ending, numbers, compared, following)
     return Run(scenario, summary, None, Kept(trace, _tables(recorder), shadows))
@@ -152,7 +152,7 @@ def summarise(
     end, outcome = numbers.end, ending.outcome
     ticks = round(float(end["time"][-1]) / scenario.sample_time)
     completed = outcome is not None and outcome.reason is EndReason.COMPLETED
-    wanted = target(scenario).poses(end["tick"])
+    wanted = scenario.target.poses(end["tick"])
     converged = completed and has_converged(end, wanted)
     final = _final(end, wanted)
     seconds = ending.loop_seconds

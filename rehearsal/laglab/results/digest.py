@@ -3,8 +3,7 @@
 from collections.abc import Iterable
 from typing import NamedTuple
 
-import numpy as np
-
+from laglab.results.columns import joined
 from laglab.results.numbers import (
     LAST_SECOND,
     RmsError,
@@ -43,6 +42,6 @@ def digest(pieces: Iterable[Trace], measurement_delay: int) -> Digest:
 
 
 def _last_second(pieces: list[Trace]) -> Trace:
-    whole = {name: np.concatenate([each[name] for each in pieces]) for name in pieces[0]}
+    whole = joined(pieces)
     last = last_second(whole["time"])
     return {name: column[last] for name, column in whole.items()}

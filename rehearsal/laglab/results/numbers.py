@@ -9,6 +9,8 @@ from laglab.results.summary import Errors
 from laglab_gateway import Trace
 
 AXES = ("x", "y", "theta")
+VARIANCES = ("p_xx", "p_yy", "p_tt")
+"""Of these, as tables call them."""
 DISTANCE_BOUND = 0.06
 HEADING_BOUND = 0.05
 LAST_SECOND = 1.0
@@ -64,6 +66,14 @@ def pose_difference(poses: Array, others: Array) -> Array:
         difference = poses - others
     difference[..., 2] = wrapped(difference[..., 2])
     return difference
+
+
+def mean_of_known(values: Array, axis: int = 0) -> Array:
+    """Along one axis; NaN where there is no value."""
+    there = ~np.isnan(values)
+    with np.errstate(invalid="ignore", over="ignore"):
+        mean: Array = np.where(there, values, 0).sum(axis=axis) / there.sum(axis=axis)
+    return mean
 
 
 def goal_errors(pose: Array, goal: Goal) -> tuple[Array, Array]:

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
+from msgspec.structs import astuple
 from numpy.typing import NDArray
 from rich.table import Table
 
-from laglab.results.columns import read_columns
+from laglab.results.columns import places, read_columns
 from laglab.results.figures import INCHES, Width, legend, line, printed, sheet
 from laglab.results.figures.panels import (
     COMPONENTS,
@@ -21,7 +22,7 @@ from laglab.results.figures.panels import (
     marked,
     symmetric,
 )
-from laglab.results.numbers import deviation, rms_error, robot_pose
+from laglab.results.numbers import AXES, VARIANCES, deviation, rms_error, robot_pose
 from laglab.results.run import Kept, Run, open_run
 from laglab.results.shadows import Shadow
 from laglab.scenario import Scenario
@@ -35,28 +36,25 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Replays = Mapping[str, Shadow]
-VARIANCES = ("p_xx", "p_yy", "p_tt")
 
 
 def estimates(replayed: Shadow) -> NDArray[np.float64]:
     """x̂, shape (ticks heard, 3)."""
-    return np.stack([replayed[axis] for axis in ("x", "y", "theta")], axis=1)
+    return np.stack([replayed[axis] for axis in AXES], axis=1)
 
 
-def off(replayed: Shadow, trace: Trace) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Ticks that are in the trace, and the estimate less the pose there, shape (ticks, 3)."""
-    rows = np.searchsorted(trace["tick"], replayed["tick"])
-    there = rows < len(trace["tick"])
-    true = {name: column[rows[there]] for name, column in trace.items()}
-    return replayed["tick"][there], deviation(true, estimates(replayed)[there])
+def off(replayed: Shadow, trace: Trace) -> tuple[Shadow, NDArray[np.float64]]:
+    """What was said of the ticks in the trace; the estimate less the pose there, (ticks, 3)."""
+    there, rows = places(trace["tick"], replayed["tick"])
+    said = {name: column[there] for name, column in replayed.items()}
+    true = {name: column[rows] for name, column in trace.items()}
+    return said, deviation(true, estimates(said))
 
 
 def rms_deviation(replayed: Shadow, trace: Trace) -> list[float]:
     """Root mean square deviation from the true poses in x, y, θ; NaN where nothing was said."""
-    _, error = off(replayed, trace)
-    if np.isnan(error).all():
-        return [np.nan] * 3
-    return [float(value) for value in np.sqrt(np.nanmean(error**2, axis=0))]
+    errors = rms_error(off(replayed, trace)[1])
+    return [np.nan] * 3 if errors is None else list(astuple(errors))
 
 
 def replays_table(replays: Replays, trace: Trace | None) -> Table:
@@ -141,11 +139,11 @@ def _draw_deviations(
 ) -> None:
     errors, claims = [], []
     for number, (name, replayed) in enumerate(replays.items()):
-        ticks, error = off(replayed, trace)
-        time = ticks * scenario.sample_time
+        said, error = off(replayed, trace)
+        time = said["tick"] * scenario.sample_time
         marked(axes, time, error[:, i], line(number), number, name)
         errors.append(error[:, i])
-        two_sigma = 2 * np.sqrt(np.maximum(replayed[VARIANCES[i]][: len(ticks)], 0))
+        two_sigma = 2 * np.sqrt(np.maximum(said[VARIANCES[i]], 0))
         claims.append(two_sigma)
         for edge in (-two_sigma, two_sigma):
             axes.plot(time, edge, color=line(number).color, linewidth=0.4)

@@ -8,11 +8,17 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from laglab.errors import ResultsError
-from laglab.results.columns import Columns, column_pieces, columns_of, joined, read_columns
+from laglab.results.columns import (
+    Columns,
+    at_ticks,
+    column_pieces,
+    columns_of,
+    joined,
+    read_columns,
+    stride,
+    thinned,
+)
 from laglab.results.figures import Width, draw_run
 from laglab.results.shadows import Shadow, beside, read_shadow, shadow_file, shadow_pieces
 from laglab.results.summary import Summary, read_summary
@@ -112,20 +118,19 @@ class Run:
     @cached_property
     def drawn(self) -> Trace:
         """As much of the trace as a figure shows."""
-        return _thinned(self.trace) if self.kept or self._is_short else self._read_thinned()
+        if self.kept or self._is_short:
+            return thinned(self.trace, stride(len(self.trace["tick"]), MOST_DRAWN))
+        return self._read_thinned()
 
     def drawn_table(self, name: str) -> Columns:
         """As much of the rows of one of the other files as a figure shows."""
-        pieces = (
-            {column: cells[:: self.stride].copy() for column, cells in each.items()}
-            for each in self.table_pieces(name)
-        )
+        pieces = (thinned(each, self.stride) for each in self.table_pieces(name))
         return joined([columns_of([], ROWS[name]), *pieces])
 
     @property
     def stride(self) -> int:
         """Of so many rows a figure shows one."""
-        return max(1, -(-self.summary.ticks // MOST_DRAWN))
+        return stride(self.summary.ticks, MOST_DRAWN)
 
     @cached_property
     def first_tick(self) -> int:
@@ -172,16 +177,9 @@ class Run:
 
     def _read_thinned(self) -> Trace:
         """Read so that what is not drawn is never in memory together."""
-        pieces = [
-            {
-                name: column[:: self.stride].copy() for name, column in each.items()
-            }  # no view of it all
-            for each in self.pieces()
-        ]
-        whole = {name: np.concatenate([each[name] for each in pieces]) for name in pieces[0]}
+        whole = joined(thinned(each, self.stride) for each in self.pieces())
         for name in self.scenario.estimator.compare:
-            seen = [_at(piece, whole["tick"]) for piece in self.shadow_pieces(name)]
-            shadow = {column: np.concatenate([each[column] for each in seen]) for column in seen[0]}
+            shadow = joined(at_ticks(each, whole["tick"]) for each in self.shadow_pieces(name))
             whole |= beside(whole, shadow, name)
         return whole
 
@@ -194,13 +192,3 @@ def open_run(directory: str | Path) -> Run:
     folder = Path(directory)
     summary = read_summary(folder)
     return Run(load(str(folder / SCENARIO_FILE)), summary, folder)
-
-
-def _thinned(trace: Trace) -> Trace:
-    stride = -(-len(trace["tick"]) // MOST_DRAWN)
-    return {name: column[::stride] for name, column in trace.items()}
-
-
-def _at(shadow: Shadow, ticks: NDArray[np.float64]) -> Shadow:
-    there = np.isin(shadow["tick"], ticks)
-    return {name: column[there] for name, column in shadow.items()}

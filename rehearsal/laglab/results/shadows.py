@@ -1,15 +1,13 @@
 """Estimators that shadow a run: what they say to the record of it."""
 
-import csv
 from collections.abc import Callable, Iterable, Iterator
-from itertools import islice
 from pathlib import Path
 from urllib.parse import quote
 
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.errors import NoRunError
+from laglab.results.columns import Lines, csv_pieces, joined, places
 from laglab.results.numbers import AXES, RmsError, deviation
 from laglab.results.summary import Errors
 from laglab.results.whole import whole_file
@@ -77,25 +75,16 @@ def collected(rows: Iterable[ShadowRow]) -> Shadow:
 
 def read_shadow(path: Path) -> Shadow:
     """What `kept_rows` wrote. Raises NoRunError when the file is no shadow's."""
-    pieces = list(shadow_pieces(path))
-    return {name: np.concatenate([piece[name] for piece in pieces]) for name in COLUMNS}
+    return joined(shadow_pieces(path))
 
 
-def shadow_pieces(path: Path, rows: int = 5_000) -> Iterator[Shadow]:
+def shadow_pieces(path: Path) -> Iterator[Shadow]:
     """The same, so many rows at a time; one piece at least, if without a row."""
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            lines = csv.reader(file)
-            if next(lines, None) != list(COLUMNS):
-                raise NoRunError(f"{path}: expected the columns {','.join(COLUMNS)}")
-            yield _columns([])
-            while piece := list(islice(lines, rows)):
-                yield _columns(piece)
-    except (OSError, ValueError, csv.Error) as error:
-        raise NoRunError(f"{path} is not what an estimator said: {error}") from error
+    yield _columns([])
+    yield from csv_pieces(path, COLUMNS, _columns)
 
 
-def _columns(lines: list[list[str]]) -> Shadow:
+def _columns(lines: Lines) -> Shadow:
     table = np.array(lines, dtype=np.float64).reshape(-1, len(COLUMNS))
     return dict(zip(COLUMNS, table.T, strict=True))
 
@@ -103,10 +92,9 @@ def _columns(lines: list[list[str]]) -> Shadow:
 def beside(trace: Trace, shadow_: Shadow, name: str) -> Trace:
     """The estimates as columns of the trace, `x_NAME` and so on; NaN where nothing was said."""
     columns = {f"{axis}_{name}": np.full(len(trace["tick"]), np.nan) for axis in AXES}
-    rows = np.searchsorted(trace["tick"], shadow_["tick"])
-    there = rows < len(trace["tick"])
+    there, rows = places(trace["tick"], shadow_["tick"])
     for axis in AXES:
-        columns[f"{axis}_{name}"][rows[there]] = shadow_[axis][there]
+        columns[f"{axis}_{name}"][rows] = shadow_[axis][there]
     return columns
 
 

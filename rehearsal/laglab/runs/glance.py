@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable
 import numpy as np
 from msgspec import Struct
 
-from laglab.results.target import target
 from laglab.scenario import Scenario
 from laglab_gateway import (
     FOLLOWED,
@@ -54,7 +53,7 @@ class Glances(Recorder):
     """Keeps the last of everything."""
 
     def __init__(self, scenario: Scenario) -> None:
-        self._target = target(scenario)
+        self._target = scenario.target
         self._patience = scenario.safety.link_timeout
         self._row: TraceRow | None = None
         self._claim: ClaimRow | None = None

@@ -18,6 +18,7 @@ from laglab.scenario.tables.law import LawTable
 from laglab.scenario.tables.link import LinkTable
 from laglab.scenario.tables.plant import PlantTable
 from laglab.scenario.tables.table import POSE, Pose, Table, as_in
+from laglab.scenario.target import Target
 from laglab.scenario.toml import parsed
 from laglab_control import FAR, RobotModel, is_far
 from laglab_gateway import Origin, Safety
@@ -107,6 +108,11 @@ class Scenario(Table):
         """What the robot is to follow; None: it is to come to the goal."""
         told = self.law.path
         return None if told is None else paths.reference_path(told, self.goal[:2])
+
+    @property
+    def target(self) -> Target:
+        """Where the robot is to be at each tick."""
+        return Target(self.goal, self.path, self.sample_time)
 
     @property
     def last_tick(self) -> int | None:

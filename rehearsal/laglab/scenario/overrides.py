@@ -11,6 +11,11 @@ Overrides = Mapping[str, object]
 """Dotted key → value. The tables of a list are counted from 0: `link.event.0.at`."""
 
 
+def both_ways(**impairments: object) -> Overrides:
+    """The same in both directions of the link, and nothing else there."""
+    return {"link.command": impairments, "link.measurement": impairments}
+
+
 def assignment(text: str) -> tuple[str, object]:
     """`KEY=VALUE`, a dotted key and a TOML value; words that are none are text.
 

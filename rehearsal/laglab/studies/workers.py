@@ -1,5 +1,6 @@
 """The jobs of a study, done by processes of our own, or by whoever else does jobs."""
 
+import os
 import pickle
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -11,9 +12,9 @@ from typing import Any, Protocol, Self, TypeVar
 
 from msgspec import Struct
 
-from laglab.errors import LaglabError, RunError
+from laglab.errors import RunError
+from laglab.runs.answers import answer_all
 from laglab.runs.child import LOOK_UP, Child, Inbox, Tell, started
-from laglab.runs.errors import SIDE_ERRORS
 from laglab.runs.reports import Computed, Ended, Failed
 
 Job = TypeVar("Job")
@@ -29,6 +30,11 @@ class Executor(Protocol):
 
     def submit(self, function: Callable[[Job], Answer], job: Job, /) -> "Future[Answer]":
         """Have it done."""
+
+
+def cores() -> int:
+    """Of this machine."""
+    return os.cpu_count() or 1
 
 
 class Call(Struct, frozen=True):
@@ -54,11 +60,12 @@ class Processes:
     """
 
     def __init__(self, workers: int) -> None:
+        """So many; 0: one a core."""
         self._asked: Queue[_Asked] = Queue()
         self._over = threading.Event()
         self._threads = [
             threading.Thread(target=self._keep, args=(f"worker {number}",), daemon=True)
-            for number in range(1, workers + 1)
+            for number in range(1, (workers or cores()) + 1)
         ]
 
     def __enter__(self) -> Self:
@@ -131,11 +138,8 @@ def _given_up(asked: _Asked, how: str) -> bool:
 
 def work(call: Call, tell: Tell) -> None:
     """In the worker: one job."""
-    try:
-        function, job = pickle.loads(call.pickled)
-        tell(Computed(pickle.dumps(function(job))))
-    except (LaglabError, *SIDE_ERRORS) as error:
-        tell(Failed(str(error), begun=True))
+    function, job = pickle.loads(call.pickled)
+    answer_all(tell, map(function, [job]))
 
 
 def as_done(
@@ -166,9 +170,10 @@ def shared_out(
 ) -> Iterator[Answer]:
     """The answers of processes of our own, in the order in which they are done.
 
-    `function` stands at the top of a module. Raises RunError, when a job fails, or kills whoever
-    does it.
+    `function` stands at the top of a module; of `workers` 0 is one a core. Raises RunError, when a
+    job fails, or kills whoever does it.
     """
-    with Processes(min(workers, len(jobs))) as processes:
+    workers = min(workers or cores(), len(jobs))
+    with Processes(workers) as processes:
         for _, future in as_done(processes, function, jobs, ahead=2 * workers):
             yield future.result()

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from laglab.results.figures.shown import Shown
-    from laglab.results.target import Target
+    from laglab.scenario import Target
 
 Array = NDArray[np.float64]
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from laglab.results.link_view import LinkView, link_view
 from laglab.results.numbers import (
+    VARIANCES,
     deviation,
     is_measured,
     loop_estimates,
@@ -16,8 +17,7 @@ from laglab.results.numbers import (
     robot_pose,
     shadow_estimates,
 )
-from laglab.results.target import Target, target
-from laglab.scenario import Scenario
+from laglab.scenario import Scenario, Target
 from laglab_gateway import CLAIMS_FILE, Trace
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ class Shown(NamedTuple):
     @property
     def target(self) -> Target:
         """Where the robot was to be."""
-        return target(self.scenario)
+        return self.scenario.target
 
     @property
     def is_estimated(self) -> bool:
@@ -118,7 +118,7 @@ def shown(run: Run) -> Shown:
     trace = run.drawn
     unit = clock(float(trace["time"][-1]))
     claims = run.drawn_table(CLAIMS_FILE)
-    variances = np.stack([claims[name].astype(float) for name in ("p_xx", "p_yy", "p_tt")], axis=1)
+    variances = np.stack([claims[name].astype(float) for name in VARIANCES], axis=1)
     return Shown(
         run.scenario,
         unit,

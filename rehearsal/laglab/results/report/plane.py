@@ -14,8 +14,7 @@ from laglab.results.report.plots import (
     legend_above,
 )
 from laglab.results.report.sources import Sources
-from laglab.results.target import Target, target
-from laglab.scenario import Scenario
+from laglab.scenario import Scenario, Target
 
 
 class Plane:
@@ -59,7 +58,7 @@ def path_plot(
     )
     tips = [("t", "@time{0.00} s"), ("x̂", "@x_est{0.000} m"), ("ŷ", "@y_est{0.000} m")]
     plot.add_tools(HoverTool(renderers=[path], tooltips=tips, visible=False))
-    _mark_target(plot, target(scenario))
+    _mark_target(plot, scenario.target)
     plot.patch("x", "y", source=sources.robot, color=BLACK, fill_alpha=0.15, line_width=2)
     plot.patch(
         "x",

@@ -4,7 +4,15 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from laglab.results.columns import Columns, columns_of, joined
+from laglab.results.columns import (
+    Columns,
+    at_ticks,
+    columns_of,
+    joined,
+    places,
+    stride,
+    thinned,
+)
 from laglab.results.link_view import LinkView
 from laglab.results.report.tables import (
     ALARM,
@@ -15,13 +23,11 @@ from laglab.results.report.tables import (
     arrival_columns,
     losses,
     marks,
-    places,
     refusals,
     tick_columns,
     timing_columns,
 )
 from laglab.results.run import Run
-from laglab.results.target import target
 from laglab_gateway import ARRIVALS_FILE, CLAIMS_FILE, LINK_FILE, ROWS, TIMING_FILE, Trace
 
 MOST_MARKS = 2_000
@@ -29,36 +35,26 @@ MOST_MARKS = 2_000
 
 def tables_of(run: Run, view: LinkView, most: int) -> Tables:
     """With at most so many ticks. Raises: ResultsError, TraceError."""
-    whole = run.drawn
-    trace = {name: column[:: _stride(len(whole["tick"]), most)] for name, column in whole.items()}
-    every = _stride(run.summary.ticks, most)
-    claims = joined(_thinned(run, CLAIMS_FILE, lambda each: _of_ticks(each, trace)))
+    trace = thinned(run.drawn, stride(len(run.drawn["tick"]), most))
+    every = stride(run.summary.ticks, most)
+    claims = joined(_taken(run, CLAIMS_FILE, lambda each: at_ticks(each, trace["tick"])))
     scenario = run.scenario
-    ticks = tick_columns(trace, claims, target(scenario), scenario.estimator.compare)
+    ticks = tick_columns(trace, claims, scenario.target, scenario.estimator.compare)
     _note_due(run, ticks)
     return Tables(
         ticks,
-        joined(_thinned(run, ARRIVALS_FILE, lambda each: _latest(each, "command", every))),
-        joined(_thinned(run, ARRIVALS_FILE, lambda each: _latest(each, "measurement", every))),
+        joined(_taken(run, ARRIVALS_FILE, lambda each: _latest(each, "command", every))),
+        joined(_taken(run, ARRIVALS_FILE, lambda each: _latest(each, "measurement", every))),
         _marks_of(run, view),
-        joined(_thinned(run, TIMING_FILE, lambda each: _worst(each, scenario.sample_time, every))),
+        joined(_taken(run, TIMING_FILE, lambda each: _worst(each, scenario.sample_time, every))),
     )
 
 
-def _stride(rows: int, most: int) -> int:
-    return max(1, -(-rows // most))
-
-
-def _thinned(run: Run, file: str, take: Callable[[Columns], Columns]) -> Iterator[Columns]:
+def _taken(run: Run, file: str, take: Callable[[Columns], Columns]) -> Iterator[Columns]:
     """What is taken of each piece, and of none at least one."""
     yield take(columns_of([], ROWS[file]))
     for piece in run.table_pieces(file):
         yield take(piece)
-
-
-def _of_ticks(claims: Columns, trace: Trace) -> Columns:
-    there, _ = places(trace["tick"], claims["tick"])
-    return {name: column[there] for name, column in claims.items()}
 
 
 def _note_due(run: Run, ticks: Trace) -> None:
@@ -90,8 +86,8 @@ def _largest(columns: Columns, by: str, every: int) -> Columns:
 
 def _marks_of(run: Run, view: LinkView) -> Columns:
     Ts = run.scenario.sample_time
-    found = [_few(joined(_thinned(run, LINK_FILE, lambda each: losses(each, Ts))))]
-    found.append(_few(joined(_thinned(run, ARRIVALS_FILE, refusals))))
+    found = [_few(joined(_taken(run, LINK_FILE, lambda each: losses(each, Ts))))]
+    found.append(_few(joined(_taken(run, ARRIVALS_FILE, refusals))))
     found.append(marks([span.start for span in view.stopped], STOPPED, BY_ITSELF))
     found.append(marks(view.emergencies, STOPPED, EMERGENCY))
     alarms = run.summary.station.alarms if run.summary.station else ()
@@ -104,5 +100,4 @@ def _marks_of(run: Run, view: LinkView) -> Columns:
 
 def _few(columns: Columns) -> Columns:
     """Of thousands every so manyth."""
-    every = _stride(len(columns["time"]), MOST_MARKS)
-    return {name: column[::every] for name, column in columns.items()}
+    return thinned(columns, stride(len(columns["time"]), MOST_MARKS))

@@ -6,16 +6,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.results.columns import Columns
+from laglab.results.columns import Columns, places
 from laglab.results.numbers import (
     AXES,
+    VARIANCES,
     deviation,
     goal_errors,
     loop_estimates,
     robot_pose,
     shadow_estimates,
 )
-from laglab.results.target import Target
+from laglab.scenario import Target
 from laglab_gateway import FOLLOWED, Trace
 
 Array = NDArray[np.float64]
@@ -59,7 +60,7 @@ def tick_columns(
         columns |= _errors(f"_{name}", deviation(trace, shadow_estimates(trace, name)))
     claimed = _claimed(trace["tick"], claims)
     columns |= {name: claimed[name] for name in COVARIANCES}
-    for axis, variance in zip(AXES, ("p_xx", "p_yy", "p_tt"), strict=True):
+    for axis, variance in zip(AXES, VARIANCES, strict=True):
         within = 2 * np.sqrt(np.maximum(claimed[variance], 0.0))
         columns |= {f"{axis}_above": within, f"{axis}_below": -within}
     columns["due"] = np.full(rows, np.nan)
@@ -77,14 +78,6 @@ def _claimed(ticks: Array, claims: Columns) -> dict[str, Array]:
     for name, column in columns.items():
         column[at] = claims[name][there]
     return columns
-
-
-def places(ticks: Array, wanted: NDArray[np.generic]) -> tuple[NDArray[np.bool_], NDArray[np.intp]]:
-    """Which of the `wanted` ticks are among the `ticks`, which grow, and where."""
-    rows = np.searchsorted(ticks, wanted.astype(float))
-    there = rows < len(ticks)
-    there[there] = ticks[rows[there]] == wanted[there]
-    return there, rows[there]
 
 
 def arrival_columns(arrivals: Columns, direction: str) -> Columns:

@@ -1,9 +1,10 @@
 """A robot that somebody brings as a class, watched: whatever it does wrong is said in one line."""
 
 import math
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, Self
 
+from laglab.runs.plant.placing import pose_asked
 from laglab.scenario import Scenario
 from laglab.scenario.tables.plant import SHIPPED
 from laglab_control.plugins import (
@@ -26,38 +27,67 @@ def maker_of(kind: str) -> Maker:
     return find_plugin("laglab.plants", kind, tuple(SHIPPED))
 
 
-class BroughtPlant:
-    """Somebody's object, as the gateway's plant. Every method raises PluginFailedError."""
+class Watched:
+    """Somebody's object. Every method raises PluginFailedError, when it fails or answers what is no
+    reading."""
 
-    def __init__(self, name: str, one: Any, start: Sequence[float]) -> None:
-        self._name, self._one, self._start = name, one, start
-        self._tick = 0
-        self._reading = self._read()
+    def __init__(self, name: str, one: Any) -> None:
+        self._name, self._one = name, one
 
     @classmethod
-    def made(cls, scenario: Scenario) -> "BroughtPlant":
-        """Of the scenario's kind. Raises PluginError: it cannot be made, or is no plant."""
-        kind, told = scenario.plant.kind, (scenario.sample_time, scenario.start, scenario.seed)
-        one = made(kind, maker_of(kind), *told, **scenario.plant.options)
+    def made(
+        cls,
+        kind: str,
+        sample_time: float,
+        start: Sequence[float],
+        seed: int,
+        options: Mapping[str, object],
+    ) -> Self:
+        """Of that class. Raises PluginError: it cannot be made, or is no plant."""
+        one = made(kind, maker_of(kind), sample_time, start, seed, **options)
         for method, parameters in METHODS.items():
             refuse_misfit(kind, one, method, *parameters)
-        return cls(kind, one, scenario.start)
+        return cls(kind, one)
 
-    def _read(self) -> Reading:
-        with at_tick(self._tick):
-            answer = called(self._name, self._one, "read")
-            try:
-                reading = Reading(*map(float, answer))
-            except (TypeError, ValueError):
-                wanted = ", ".join(Reading._fields)
-                raise self._wrong(f"must answer {wanted}, not {shown(answer)}") from None
-            for name, number in reading._asdict().items():
-                if not math.isfinite(number):
-                    raise self._wrong(f"{name} must be finite, not {number}")
-            return reading
+    def read(self) -> Reading:
+        """Its answer as a reading."""
+        answer = called(self._name, self._one, "read")
+        try:
+            reading = Reading(*map(float, answer))
+        except (TypeError, ValueError):
+            wanted = ", ".join(Reading._fields)
+            raise self._wrong(f"must answer {wanted}, not {shown(answer)}") from None
+        for name, number in reading._asdict().items():
+            if not math.isfinite(number):
+                raise self._wrong(f"{name} must be finite, not {number}")
+        return reading
 
     def _wrong(self, what: str) -> PluginFailedError:
         return PluginFailedError(f"{self._name}.read: {what}")
+
+    def step(self, v: float, omega: float) -> None:
+        """One tick."""
+        called(self._name, self._one, "step", v, omega)
+
+    def place(self, x: float, y: float, theta: float) -> None:
+        """Elsewhere."""
+        called(self._name, self._one, "place", x, y, theta)
+
+
+class BroughtPlant:
+    """The same as the gateway's plant, which is read once a tick. An error names the tick."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        """Raises PluginError: it cannot be made, or is no plant."""
+        plant, self._start, self._tick = scenario.plant, scenario.start, 0
+        self._one = Watched.made(
+            plant.kind, scenario.sample_time, scenario.start, scenario.seed, plant.options
+        )
+        self._reading = self._read()
+
+    def _read(self) -> Reading:
+        with at_tick(self._tick):
+            return self._one.read()
 
     def read(self) -> Reading:
         """What it said at this tick."""
@@ -66,14 +96,12 @@ class BroughtPlant:
     def step(self, v: float, omega: float) -> None:
         """One tick of it."""
         with at_tick(self._tick):
-            called(self._name, self._one, "step", v, omega)
+            self._one.step(v, omega)
         self._tick += 1
         self._reading = self._read()
 
     def place(self, x: float, y: float, theta: float) -> None:
         """Put it there; NaN stands for the start pose's."""
-        asked = zip((x, y, theta), self._start, strict=True)
-        pose = [there if math.isnan(each) else each for each, there in asked]
         with at_tick(self._tick):
-            called(self._name, self._one, "place", *pose)
+            self._one.place(*pose_asked((x, y, theta), self._start))
         self._reading = self._read()

@@ -1,13 +1,13 @@
 """A plant that is an FMU with a map of names: anyone's by the scenario's, ours by our own."""
 
-import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 from laglab.runs.plant.opened import OpenPlant
+from laglab.runs.plant.placing import pose_asked, seed_of
 from laglab.runs.plant.sensor import NoisySensor
-from laglab.runs.plant.shipped import NEXT_SEED, SEEDS, wheel_speeds
+from laglab.runs.plant.shipped import wheel_speeds
 from laglab.scenario import Scenario
 from laglab.scenario.tables.plant import POSE_NAMES
 from laglab_fmu import fmu_path
@@ -57,8 +57,7 @@ class ForeignPlant:
         if not is_placeable(self._wiring):
             called = self._scenario.plant.called
             raise UnplaceableError(f"{called} begins where it begins: plant.start is not set")
-        asked = zip((x, y, theta), self._scenario.start, strict=True)
-        pose = [there if math.isnan(each) else each for each, there in asked]
+        pose = pose_asked((x, y, theta), self._scenario.start)
         self._placed += 1
         self._robot.restart(start_values(self._wiring, self._scenario, pose, self._placed))
         self._begin()
@@ -74,7 +73,7 @@ def start_values(
 ) -> list[float]:
     """Of what takes the start: the pose, and a seed that no placing before had."""
     there = dict(zip(POSE_NAMES, pose, strict=True))
-    there["seed"] = (scenario.seed + placed * NEXT_SEED) % SEEDS
+    there["seed"] = seed_of(scenario.seed, placed)
     return [there[name] for name in told.start]
 
 

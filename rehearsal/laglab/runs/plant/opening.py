@@ -46,7 +46,7 @@ def _opened(scenario: Scenario) -> Iterator[OpenPlant]:
         with Robot.open(scenario.plant.fmi, parameters) as robot:
             yield OpenPlant(FmuPlant(robot, parameters))
     else:
-        yield OpenPlant(BroughtPlant.made(scenario))
+        yield OpenPlant(BroughtPlant(scenario))
 
 
 def check_plant(scenario: Scenario) -> None:

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from laglab.runs.plant.placing import pose_asked, seed_of
 from laglab.scenario import Scenario
 from laglab_fmu import RobotParameters
 from laglab_gateway import Reading
 
 if TYPE_CHECKING:
     from laglab_fmu import Robot
-
-SEEDS, NEXT_SEED = 2**31, 7919
-"""How many seeds there are, and how far apart those of a run are, of which each placing takes one:
-not a neighbour, which is likely to be another run's."""
 
 
 def robot_parameters(scenario: Scenario) -> RobotParameters:
@@ -66,11 +62,8 @@ class FmuPlant:
 
     def place(self, x: float, y: float, theta: float) -> None:
         """Start the FMU again from there, with noise that it did not have before."""
-        asked, start = (x, y, theta), self._parameters.start
-        x, y, theta = (
-            there if math.isnan(each) else each for each, there in zip(asked, start, strict=True)
-        )
+        start = pose_asked((x, y, theta), self._parameters.start)
         self._placed += 1
-        seed = (self._parameters.seed + self._placed * NEXT_SEED) % SEEDS
-        self._robot.reset(replace(self._parameters, start=(x, y, theta), seed=seed))
+        seed = seed_of(self._parameters.seed, self._placed)
+        self._robot.reset(replace(self._parameters, start=start, seed=seed))
         self._reading = Reading(*self._robot.read())

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from laglab.scenario import Overrides, load
+from laglab.studies.judged import joined
 from laglab.studies.maps import StudyRuns, runs_of
-from laglab.studies.sweep.judged import joined
 from laglab.studies.sweep.study import Study
 from laglab.studies.sweep.ways import judged
 

@@ -5,12 +5,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from laglab.results.target import target
 from laglab.scenario import Scenario
 from laglab.scenario.tables.link import LinkTable
+from laglab.studies.judged import Judge, Judgements, Stretch
 from laglab.studies.many import Ticks, is_ideal, run_many
 from laglab.studies.sweep.cell import Cell
-from laglab.studies.sweep.judged import Judge, Judgements, Stretch
 from laglab.studies.sweep.one_by_one import judged_alone
 
 
@@ -41,7 +40,7 @@ def _in_common(scenario: Scenario) -> tuple[bool, str]:
 def _together(cells: Sequence[Cell]) -> Iterator[Judgements]:
     """One batch."""
     scenario, scenarios = cells[0].scenario, [run for cell in cells for run in cell.runs()]
-    judge = Judge(target(scenario), scenario.link.m, len(scenarios))
+    judge = Judge(scenario.target, scenario.link.m, len(scenarios))
     ends = run_many(scenarios, lambda ticks: judge.add(_recorded(ticks)))
     judged = judge.judgements(np.where(ends.diverged, ends.last_tick, np.nan))
     for robot in np.flatnonzero(ends.unsure):

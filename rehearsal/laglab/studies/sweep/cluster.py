@@ -2,7 +2,6 @@
 
 import asyncio
 import logging
-import os
 import socket
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
@@ -11,7 +10,7 @@ from urllib.parse import urlsplit
 
 from laglab.errors import RefusedError
 from laglab.extras import SPREADING, require
-from laglab.studies.workers import Executor
+from laglab.studies.workers import Executor, cores
 
 OURS = "local"
 SCHEMES = ("tcp", "tls")
@@ -77,7 +76,7 @@ def _own(workers: int) -> Any:
     import distributed
 
     return distributed.LocalCluster(
-        n_workers=workers or os.cpu_count() or 1,
+        n_workers=workers or cores(),
         threads_per_worker=1,
         dashboard_address=None,
         silence_logs=logging.CRITICAL,

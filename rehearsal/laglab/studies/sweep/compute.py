@@ -8,8 +8,8 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from laglab.scenario.explain import spelled
+from laglab.studies.judged import Judgements
 from laglab.studies.sweep.cell import Cell
-from laglab.studies.sweep.judged import Judgements
 from laglab.studies.sweep.ways import judged
 
 DESCRIPTION = b"laglab.cell"

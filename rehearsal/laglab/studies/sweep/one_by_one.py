@@ -8,13 +8,10 @@ import numpy as np
 
 from laglab.errors import RunError
 from laglab.interface import run
-from laglab.results.numbers import loop_estimates, robot_pose
-from laglab.results.target import target
 from laglab.scenario import Scenario
+from laglab.studies.judged import Array, Judgements, joined, judged_run
 from laglab.studies.sweep.cell import Cell
-from laglab.studies.sweep.judged import Array, Judgements, Stretch, joined, judgements
 from laglab_control import Applied, Control, Controller, Echo, Measured
-from laglab_gateway import Trace
 
 ENDINGS = ("completed", "diverged")
 
@@ -54,18 +51,8 @@ def judged_alone(scenario: Scenario) -> Judgements:
     """What became of one run. Raises RunError."""
     claims: list[Array] = []
     done = run(scenario, controller=partial(Claiming, claims=claims))
-    outcome = done.summary.outcome
-    if outcome not in ENDINGS:
+    if done.summary.outcome not in ENDINGS:
         raise RunError(f"{scenario.name}, seed {scenario.seed}: {done.summary.verdict}")
-    last = done.trace["tick"][-1] if outcome == "diverged" else np.nan
-    record = _record(done.trace, claims)
-    return judgements(record, np.array([last]), target(scenario), scenario.link.m)
-
-
-def _record(trace: Trace, claims: Sequence[Array]) -> Stretch:
-    """Of one robot."""
-    claimed = np.full((len(trace["tick"]), 6), np.nan)
+    claimed = np.full((len(done.trace["tick"]), 6), np.nan)
     claimed[: len(claims)] = claims[: len(claimed)]
-    speeds = np.stack([trace["v"], trace["omega"]], axis=1)
-    whole = robot_pose(trace), loop_estimates(trace), claimed, speeds
-    return Stretch(*[each[np.newaxis] for each in whole])
+    return judged_run(done, claimed)

@@ -1,9 +1,8 @@
 """A study, computed: every cell that is not there yet, by whoever does jobs."""
 
-import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import nullcontext
 from pathlib import Path
 from tempfile import mkdtemp
 
@@ -44,15 +43,10 @@ def swept(
     plan = planned(chosen, folder)
     with (
         progress_of_study(chosen.name, plan.runs, plan.seconds, progress) as told,
-        own_processes() if executor is None else nullcontext(executor) as workers,
+        Processes(0) if executor is None else nullcontext(executor) as workers,
     ):
         compute(chosen, folder, workers, told)
     return result
-
-
-def own_processes(workers: int = 0) -> AbstractContextManager[Processes]:
-    """So many; 0: one a core."""
-    return Processes(workers or os.cpu_count() or 1)
 
 
 def compute(

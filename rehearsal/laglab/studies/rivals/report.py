@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from rich.table import Table
 
-from laglab.results.figures import INCHES, Width, printed, sheet
-from laglab.studies.rivals import Outcome
+from laglab.results.figures import Width
+from laglab.studies.rivals.trials import Outcome
+from laglab.studies.shares import draw_shares
 from laglab.tables import plain_table
 
 if TYPE_CHECKING:
@@ -95,20 +96,10 @@ def draw_rivals(
     title: str, of: Scores, links: Sequence[str], strategies: Sequence[str], width: Width = "two"
 ) -> Figure:
     """A field for each link and strategy: the share of runs that converge, and how soon."""
-    shares = np.array([[of[link, strategy].share for strategy in strategies] for link in links])
-    with printed():
-        figure = sheet(INCHES[width], 0.9 + 0.34 * len(links))
-        axes = figure.subplots()
-        axes.imshow(shares, cmap="cividis", vmin=0, vmax=1, aspect="auto")
-        axes.grid(visible=False)
-        for (row, column), share in np.ndenumerate(shares):
-            settled = of[links[row], strategies[column]].settled
-            text = f"{share:.0%}" + ("" if np.isnan(settled) else f"\n{settled:.1f} s")
-            ink = "black" if share > 0.5 else "white"
-            axes.text(column, row, text, ha="center", va="center", color=ink)
-        names = [strategy.replace("-", "-\n") for strategy in strategies]
-        axes.set_xticks(range(len(strategies)), names)
-        axes.set_yticks(range(len(links)), links)
-        axes.xaxis.tick_top()
-        axes.set_title(title)
-    return figure
+
+    def share(link: str, strategy: str) -> tuple[float, str]:
+        score = of[link, strategy]
+        return score.share, "" if np.isnan(score.settled) else f"{score.settled:.1f} s"
+
+    headings = {strategy: strategy.replace("-", "-\n") for strategy in strategies}
+    return draw_shares(title, links, headings, share, width)

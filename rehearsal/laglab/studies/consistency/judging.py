@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from laglab.interface import run
 from laglab.results.nees import nees
-from laglab.results.numbers import pose_difference, robot_pose
+from laglab.results.numbers import mean_of_known, pose_difference, robot_pose
 from laglab.scenario import Scenario, changed
 from laglab.studies.overhearing import Known, Overhearing
 from laglab.studies.workers import shared_out
@@ -204,11 +204,3 @@ def _average(values: Array) -> Average:
 def _padded(values: Array, length: int) -> Array:
     missing = np.full((length - len(values), *values.shape[1:]), np.nan)
     return np.concatenate((values, missing))
-
-
-def mean_of_known(values: Array) -> Array:
-    """Along the first axis; NaN where there is no value."""
-    there = ~np.isnan(values)
-    with np.errstate(invalid="ignore", over="ignore"):
-        mean: Array = np.where(there, values, 0).sum(axis=0) / there.sum(axis=0)
-    return mean

@@ -11,8 +11,7 @@ from msgspec import Struct
 from laglab.interface import run
 from laglab.results.numbers import deviation, loop_estimates
 from laglab.results.run import Run
-from laglab.scenario import Scenario, changed, load
-from laglab.scenario.overrides import Overrides
+from laglab.scenario import Overrides, Scenario, both_ways, changed, load
 from laglab.studies.consistency import judged
 from laglab.studies.overhearing import Known, Overhearing
 from laglab.studies.workers import shared_out
@@ -27,15 +26,9 @@ LOOKED_AT_AFTER = 2.0
 """[s] So long after the first alarm the error is looked at."""
 
 
-def both(**impairments: object) -> Overrides:
-    """The same in both directions of the link."""
-    directions = ("link.command", "link.measurement")
-    return {f"{way}.{key}": value for way in directions for key, value in impairments.items()}
-
-
 JITTER = {"distribution": "exponential", "mean": 0.05}
 OUTAGES = [{"at": at, "duration": 1.0, "link": {"loss": 1.0}} for at in (2.0, 6.0)]
-EVERYTHING = both(
+EVERYTHING = both_ways(
     loss=0.3, extra_delay=JITTER, reorder=0.2, duplicate=0.02, bit_error_rate=1e-5, bandwidth=115200
 )
 
@@ -55,9 +48,9 @@ CONDITIONS: Mapping[str, Condition] = {
     "lab": Condition("lab", {}),
     "lab-radio": Condition("lab-radio", {}),
     "lab-real": Condition("lab-real", {}),
-    "30 % loss": Condition("lab", both(loss=0.3)),
-    "50 ms jitter": Condition("lab", both(extra_delay=JITTER)),
-    "20 % reordered": Condition("lab", both(reorder=0.2)),
+    "30 % loss": Condition("lab", both_ways(loss=0.3)),
+    "50 ms jitter": Condition("lab", both_ways(extra_delay=JITTER)),
+    "20 % reordered": Condition("lab", both_ways(reorder=0.2)),
     "two outages of 1 s": Condition("lab", {"link.event": OUTAGES}),
     "all of these": Condition("lab", {**EVERYTHING, "link.event": OUTAGES}),
     "wheels 10 % large": Condition("lab", {"plant.wheel_radius_error": 0.1}),

@@ -8,12 +8,10 @@ import numpy as np
 from msgspec import Struct
 
 from laglab.interface import run
-from laglab.results.numbers import loop_estimates, robot_pose
-from laglab.results.target import target
+from laglab.results.numbers import robot_pose
 from laglab.runs.robot_side import link_fates
-from laglab.scenario import Scenario, changed
-from laglab.scenario.overrides import Overrides
-from laglab.studies.sweep.judged import Stretch, judgements
+from laglab.scenario import Overrides, Scenario, both_ways, changed
+from laglab.studies.judged import judged_run
 from laglab.studies.workers import shared_out
 
 PLAN = 45
@@ -34,22 +32,17 @@ NOTHING: Overrides = {
 }
 
 
-def both(**impairments: object) -> Overrides:
-    """The same in both directions, and nothing else."""
-    return {**NOTHING, "link.command": impairments, "link.measurement": impairments}
-
-
 def _random_delay(spread: float) -> object:
     return {"distribution": "uniform", "mean": spread / 2, "spread": spread / 2}
 
 
 LINKS: Mapping[str, Overrides] = {
     "ideal": NOTHING,
-    "jitter": both(extra_delay={"distribution": "exponential", "mean": 0.05}),
-    "loss": both(loss=0.3),
-    "bursts": both(burst={"good_to_bad": 0.02, "bad_to_good": 0.05}),
-    "outages": both(outages=[[2.0, 1.0], [6.0, 1.0]]),
-    "random": both(extra_delay=_random_delay(0.1), loss=0.1),
+    "jitter": {**NOTHING, **both_ways(extra_delay={"distribution": "exponential", "mean": 0.05})},
+    "loss": {**NOTHING, **both_ways(loss=0.3)},
+    "bursts": {**NOTHING, **both_ways(burst={"good_to_bad": 0.02, "bad_to_good": 0.05})},
+    "outages": {**NOTHING, **both_ways(outages=[[2.0, 1.0], [6.0, 1.0]])},
+    "random": {**NOTHING, **both_ways(extra_delay=_random_delay(0.1), loss=0.1)},
 }
 """`random` is what the paper's authors went on to in 2014: random delays, by which frames overtake
 each other, and losses."""
@@ -153,18 +146,9 @@ def tried(trial: Trial) -> Outcome:
     """In a worker: one run."""
     scenario = Scenario.from_toml(trial.scenario)
     done = run(scenario)
-    trace, diverged = done.trace, done.summary.outcome == "diverged"
-    speeds = np.stack([trace["v"], trace["omega"]], axis=1)
-    record = Stretch(
-        robot_pose(trace)[np.newaxis],
-        loop_estimates(trace)[np.newaxis],
-        None,
-        speeds[np.newaxis],
-    )
-    ended = np.array([trace["tick"][-1] if diverged else np.nan])
     with np.errstate(all="ignore"):  # what diverges overflows
-        judged = judgements(record, ended, target(scenario), scenario.link.m)
-        driven = np.hypot(*np.diff(robot_pose(trace)[:, :2], axis=0).T).sum()
+        judged = judged_run(done)
+        driven = np.hypot(*np.diff(robot_pose(done.trace)[:, :2], axis=0).T).sum()
         rms = np.hypot(judged.rms_x[0], judged.rms_y[0])
     return Outcome(
         trial.link,

@@ -17,7 +17,7 @@ from laglab.runs.plant.shipped import robot_parameters
 from laglab.runs.robot_side import link_fates
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario
-from laglab.studies.schedule import schedule_of
+from laglab.studies.many.schedule import schedule_of
 from laglab_control.batch import BATCHED, BatchController, Pose, Speeds, Symmetric
 from laglab_control.batch.impaired import ImpairedController, Timetable
 from laglab_gateway.drive import FASTEST, Safety

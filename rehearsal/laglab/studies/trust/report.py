@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from rich.table import Table
 
-from laglab.results.figures import INCHES, printed, sheet
-from laglab.studies.trust import LOOKED_AT_AFTER, Fared
+from laglab.studies.shares import draw_shares
+from laglab.studies.trust.trials import LOOKED_AT_AFTER, Fared
 from laglab.tables import plain_table
 
 if TYPE_CHECKING:
@@ -86,20 +86,11 @@ def _more(score: Score) -> tuple[str, ...]:
 
 def draw_trust(of: Scores, stations: Sequence[str]) -> Figure:
     """The share of runs that converged, a field for each condition and station."""
+
+    def share(condition: str, station: str) -> tuple[float, str]:
+        score = of[condition, station]
+        return score.converged / score.runs, ""
+
     conditions = list(dict.fromkeys(condition for condition, _ in of))
-    shares = np.array(
-        [[of[c, s].converged / of[c, s].runs for s in stations] for c in conditions], dtype=float
-    )
-    with printed():
-        figure = sheet(INCHES["two"], 0.8 + 0.25 * len(conditions))
-        axes = figure.subplots()
-        axes.imshow(shares, cmap="cividis", vmin=0, vmax=1, aspect="auto")
-        axes.grid(visible=False)
-        for (row, column), share in np.ndenumerate(shares):
-            ink = "black" if share > 0.5 else "white"
-            axes.text(column, row, f"{share:.0%}", ha="center", va="center", color=ink)
-        axes.set_xticks(range(len(stations)), [name.replace(", ", ",\n") for name in stations])
-        axes.set_yticks(range(len(conditions)), conditions)
-        axes.xaxis.tick_top()
-        axes.set_title("runs that end at the goal")
-    return figure
+    headings = {name: name.replace(", ", ",\n") for name in stations}
+    return draw_shares("runs that end at the goal", conditions, headings, share)

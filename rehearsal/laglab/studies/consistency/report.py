@@ -12,8 +12,9 @@ from rich.table import Table
 from laglab.results.figures import INCHES, Width, legend, line, printed, sheet
 from laglab.results.figures.panels import marked
 from laglab.results.figures.style import BLUE, GREY, PALE
+from laglab.results.numbers import mean_of_known
 from laglab.scenario import Scenario
-from laglab.studies.consistency import CONFIDENCE, DEGREES, Average, Verdict, mean_of_known
+from laglab.studies.consistency.judging import CONFIDENCE, DEGREES, Average, Verdict
 from laglab.tables import plain_table
 
 if TYPE_CHECKING:

@@ -11,9 +11,12 @@ from laglab.results.numbers import (
     at_goal,
     goal_errors,
     last_second,
+    loop_estimates,
     pose_difference,
+    robot_pose,
 )
-from laglab.results.target import Target
+from laglab.results.run import Run
+from laglab.scenario import Target
 
 Array = NDArray[np.float64]
 
@@ -127,6 +130,19 @@ def judgements(record: Stretch, diverged: Array, of: Target, measurement_delay: 
     judge = Judge(of, measurement_delay, len(record.truth))
     judge.add(record)
     return judge.judgements(diverged)
+
+
+def judged_run(done: Run, claimed: Array | None = None) -> Judgements:
+    """Of one run, with what its station claimed (ticks, 6)."""
+    trace, diverged = done.trace, done.summary.outcome == "diverged"
+    record = Stretch(
+        robot_pose(trace)[np.newaxis],
+        loop_estimates(trace)[np.newaxis],
+        None if claimed is None else claimed[np.newaxis],
+        np.stack([trace["v"], trace["omega"]], axis=1)[np.newaxis],
+    )
+    last = np.array([trace["tick"][-1] if diverged else np.nan])
+    return judgements(record, last, done.scenario.target, done.scenario.link.m)
 
 
 def joined(parts: list[Judgements]) -> Judgements:
