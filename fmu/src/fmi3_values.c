@@ -4,8 +4,8 @@
 #define FMI_STATUS fmi3Status
 #include "face.h"
 
-fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference references[], size_t count, fmi3Float64 values[],
-                          size_t size) {
+fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
+                          fmi3Float64 values[], size_t size) {
     INSTANCE(instance, MODES_READ);
     if (!count) return fmi3OK;
     REQUIRE(references);
@@ -26,7 +26,7 @@ fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference refere
 #define GET_AND_SET(NAME, TYPE, FMI_TYPE)                                                                              \
     fmi3Status fmi3Get##NAME(fmi3Instance instance, const fmi3ValueReference references[], size_t count,               \
                              FMI_TYPE values[], size_t size) {                                                         \
-        INSTANCE(instance, MODES_READ);                                                                                 \
+        INSTANCE(instance, MODES_READ);                                                                                \
         if (!count) return fmi3OK;                                                                                     \
         REQUIRE(references);                                                                                           \
         REQUIRE(values);                                                                                               \
@@ -71,7 +71,7 @@ GET_AND_SET(Boolean, TYPE_BOOLEAN, fmi3Boolean)
         UNUSED(references);                                                                                            \
         UNUSED(values);                                                                                                \
         UNUSED(size);                                                                                                  \
-        INSTANCE(instance, MODES_READ);                                                                                 \
+        INSTANCE(instance, MODES_READ);                                                                                \
         if (count) REFUSE("the model has no variables of this type");                                                  \
         return fmi3OK;                                                                                                 \
     }                                                                                                                  \
@@ -104,8 +104,8 @@ fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference referen
     return fmi3OK;
 }
 
-fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference references[], size_t count, const size_t sizes[],
-                         const fmi3Binary values[], size_t size) {
+fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
+                         const size_t sizes[], const fmi3Binary values[], size_t size) {
     UNUSED(references);
     UNUSED(sizes);
     UNUSED(values);

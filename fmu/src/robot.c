@@ -136,10 +136,10 @@ static void start_tangent(const Robot *robot, const Robot *d, Robot *change) {
     change->y = d->y_start;
     change->theta = d->theta_start;
     drive_shake_tangent(robot, d, w, change);
-    change->x_meas = d->x_start + noise_tangent(misread, robot->measurement_variance_x, v[0], d_misread,
-                                                d->measurement_variance_x);
-    change->y_meas = d->y_start + noise_tangent(misread, robot->measurement_variance_y, v[1], d_misread,
-                                                d->measurement_variance_y);
+    change->x_meas =
+        d->x_start + noise_tangent(misread, robot->measurement_variance_x, v[0], d_misread, d->measurement_variance_x);
+    change->y_meas =
+        d->y_start + noise_tangent(misread, robot->measurement_variance_y, v[1], d_misread, d->measurement_variance_y);
     change->theta_meas = d->theta_start + noise_tangent(misread, robot->measurement_variance_theta, v[2], d_misread,
                                                         d->measurement_variance_theta);
 }

@@ -70,8 +70,8 @@ void drive_tangent(const Robot *robot, const Robot *d, Robot *change) {
     const double T = robot->sample_time, d_T = d->sample_time, v = commanded_speed(robot);
     const bool fastest = robot->speed_max > 0 && fabs(robot->v_command) > robot->speed_max;
     const double d_v = fastest ? copysign(d->speed_max, robot->v_command) : d->v_command;
-    const double d_speed = lagged_tangent(robot->speed - v, d_v, T, d_T, robot->speed_time_constant,
-                                          d->speed_time_constant);
+    const double d_speed =
+        lagged_tangent(robot->speed - v, d_v, T, d_T, robot->speed_time_constant, d->speed_time_constant);
     const double behind = robot->steering - clamp(wanted(robot), robot->steering_max);
     const double d_steering = lagged_tangent(behind, wanted_tangent(robot, d), T, d_T, robot->steering_time_constant,
                                              d->steering_time_constant);

@@ -27,9 +27,9 @@ typedef struct {
     /* held from one sample to the next */
     double speed, steering;             /* what drive and steering had reached at the sample */
     double speed_noise, steering_noise; /* of the sample */
-    double x_meas, y_meas, theta_meas; /* z_s = x_s + v_s */
-    double elapsed;                    /* time since the sample, in co-simulation */
-    int64_t sample;                    /* its index s */
+    double x_meas, y_meas, theta_meas;  /* z_s = x_s + v_s */
+    double elapsed;                     /* time since the sample, in co-simulation */
+    int64_t sample;                     /* its index s */
     /* following from the rest */
     double v, omega;
     double der_x, der_y, der_theta;

@@ -71,7 +71,8 @@ void drive_still(Robot *change) {
 void drive_tangent(const Robot *robot, const Robot *d, Robot *change) {
     const double grip = 1.0 - robot->wheel_slip, d_grip = -d->wheel_slip;
     const double r = true_radius(robot), L = true_track(robot);
-    const double d_r = d->wheel_radius * (1.0 + robot->wheel_radius_error) + robot->wheel_radius * d->wheel_radius_error;
+    const double d_r =
+        d->wheel_radius * (1.0 + robot->wheel_radius_error) + robot->wheel_radius * d->wheel_radius_error;
     const double d_L = d->track * (1.0 + robot->track_error) + robot->track * d->track_error;
     const double left = wheel_speed(robot, robot->drive_left, robot->omega_left) + robot->wheel_noise_left;
     const double right = wheel_speed(robot, robot->drive_right, robot->omega_right) + robot->wheel_noise_right;

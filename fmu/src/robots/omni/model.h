@@ -27,8 +27,8 @@ typedef struct {
     /* continuous states */
     double x, y, theta;
     /* held from one sample to the next */
-    double drive[3];       /* what the wheel drives had reached at the sample */
-    double wheel_noise[3]; /* of the sample */
+    double drive[3];                   /* what the wheel drives had reached at the sample */
+    double wheel_noise[3];             /* of the sample */
     double x_meas, y_meas, theta_meas; /* z_s = x_s + v_s */
     double elapsed;                    /* time since the sample, in co-simulation */
     int64_t sample;                    /* its index s */
