@@ -126,6 +126,8 @@ def test_at_the_start_they_agree_with_differences_by_every_known(
         difference = (above - np.array(face.get(*unknowns))) / (2 * step)
         face.set(**{known: value})
         np.testing.assert_allclose(J[:, column], difference, rtol=1e-6, atol=1e-8, err_msg=known)
+        back = face.fmu.getDirectionalDerivative(references(unknowns), [REFERENCE[known]], [-1.0])
+        np.testing.assert_array_equal(back, -J[:, column], err_msg=known)
     for row, unknown in enumerate(model.initialUnknowns):
         depends = {known.name for known in unknown.dependencies}
         assert {known for known, entry in zip(reals, J[row], strict=True) if entry} <= depends

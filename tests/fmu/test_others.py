@@ -140,5 +140,7 @@ def test_partial_derivatives_agree_with_differences(
             at()
             told_so = made.getDirectionalDerivative(unknowns, [reference[known]], [1.0])
             np.testing.assert_allclose(told_so, found, rtol=1e-4, atol=1e-6, err_msg=known)
+            back = made.getDirectionalDerivative(unknowns, [reference[known]], [-1.0])
+            np.testing.assert_array_equal(back, np.negative(told_so), err_msg=known)
     finally:
         made.freeInstance()

@@ -7,19 +7,14 @@
 
 /* Speed of a wheel drive under command: a first-order lag, sampled; without a time constant it is the command. */
 static double wheel_speed(const Robot *robot, double reached, double commanded) {
-    if (robot->wheel_speed_max > 0) {
-        commanded = clamp(commanded, robot->wheel_speed_max);
-    }
-    return lagged(reached, commanded, robot->sample_time, robot->motor_time_constant);
+    return lagged(reached, limited(commanded, robot->wheel_speed_max), robot->sample_time, robot->motor_time_constant);
 }
 
 static double wheel_tangent(const Robot *robot, double reached, double commanded, const Robot *d, double d_commanded) {
-    if (robot->wheel_speed_max > 0 && fabs(commanded) > robot->wheel_speed_max) {
-        d_commanded = copysign(d->wheel_speed_max, commanded);
-        commanded = clamp(commanded, robot->wheel_speed_max);
-    }
-    const double T = robot->sample_time, tau = robot->motor_time_constant;
-    return lagged_tangent(reached - commanded, d_commanded, T, d->sample_time, tau, d->motor_time_constant);
+    const double T = robot->sample_time, tau = robot->motor_time_constant, limit = robot->wheel_speed_max;
+    d_commanded = limited_tangent(commanded, d_commanded, limit, d->wheel_speed_max);
+    return lagged_tangent(reached - limited(commanded, limit), d_commanded, T, d->sample_time, tau,
+                          d->motor_time_constant);
 }
 
 static double true_radius(const Robot *robot) {
