@@ -1,5 +1,5 @@
 /* What differs between the robots that ship: how commands become body speeds.
- * Each has a `model.h`, its variables, and a `drive.c`: this, and `robot_speeds`. */
+ * Each has a `fields.h`, its variables, and a `drive.c`: this, and `robot_speeds`. */
 #ifndef LAGLAB_DRIVE_H
 #define LAGLAB_DRIVE_H
 

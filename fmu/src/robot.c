@@ -9,7 +9,7 @@
 /* Two instants closer than this part of the sample time are the same instant, computed in two ways. */
 static const double TIME_TOLERANCE = 1e-9;
 
-enum { WHEEL_NOISE, MEASUREMENT_NOISE }; /* streams */
+enum { DRIVE_NOISE, MEASUREMENT_NOISE }; /* streams */
 
 void robot_derivatives(Robot *robot) {
     robot->der_x = robot->v * cos(robot->theta);
@@ -62,7 +62,7 @@ static void draw_normal(const Robot *robot, double w[DRIVE_NOISES], double v[3])
     memset(w, 0, DRIVE_NOISES * sizeof *w);
     memset(v, 0, 3 * sizeof *v);
     if (robot->noise) {
-        noise_normal((uint64_t)robot->seed, (uint64_t)robot->sample, WHEEL_NOISE, DRIVE_NOISES, w);
+        noise_normal((uint64_t)robot->seed, (uint64_t)robot->sample, DRIVE_NOISE, DRIVE_NOISES, w);
         noise_normal((uint64_t)robot->seed, (uint64_t)robot->sample, MEASUREMENT_NOISE, 3, v);
     }
 }

@@ -128,9 +128,9 @@ def test_damaged_states_are_refused_or_harmless(
 @pytest.mark.parametrize(
     ("offset", "value", "what"),
     [
-        (HEAD + 2 * 8, struct.pack("<d", 0.0), "sample_time"),
+        (HEAD + 15 * 8, struct.pack("<d", 0.0), "sample_time"),
         (HEAD + 1 * 8, struct.pack("<d", float("nan")), "track"),
-        (HEAD + 3 * 8, struct.pack("<d", -1.0), "wheel_noise_variance"),
+        (HEAD + 7 * 8, struct.pack("<d", -1.0), "wheel_noise_variance"),
         (HEAD + 32 * 8, struct.pack("<d", -1.0), "elapsed"),
         (HEAD + 32 * 8, struct.pack("<d", 1e300), "elapsed"),
         (HEAD + 33 * 8, struct.pack("<q", -1), "sample"),
