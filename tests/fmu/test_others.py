@@ -12,8 +12,7 @@ from fmpy.fmi3 import FMU3Slave
 from fmpy.validation import validate_fmu
 
 from laglab_fmu.foreign import FmuFile, ForeignRobot, Value, Wiring
-from laglab_fmu.models import MODELS, model_of
-from laglab_fmu.variables import Kind, Role
+from laglab_fmu.models import MODELS, Kind, Role, model_of
 
 TS = 0.01
 OTHERS = ("Car2", "Car3", "Omni2", "Omni3")

@@ -97,7 +97,7 @@ def test_damaged_states_are_refused_or_harmless(
     make_face: Callable[..., Any], data: st.DataObject
 ) -> None:
     """Bytes changed, cut or added; with the checksum left wrong, or made to fit again."""
-    from laglab_fmu.description import token
+    from laglab_fmu.models import token
 
     face = make_face("Robot3", "CoSimulation")
     face.start(seed=2)
@@ -142,7 +142,7 @@ def test_damaged_states_are_refused_or_harmless(
 def test_impossible_values_are_named(
     make_face: Callable[..., Any], offset: int, value: bytes, what: str
 ) -> None:
-    from laglab_fmu.description import token
+    from laglab_fmu.models import token
 
     face = make_face("Robot2", "CoSimulation")
     face.start()
