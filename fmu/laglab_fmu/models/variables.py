@@ -110,7 +110,7 @@ def moves(inputs: Names, v: Names, omega: Names = ()) -> tuple[Variable, ...]:
     """Speeds of the body, and derivatives of its pose.
 
     Args:
-        v: the parameters that the speed along the plane follows from at the start.
+        v: the parameters that the speed follows from at the start.
         omega: those that the turning speed follows from besides.
     """
     moving, turning = (*inputs, *v), (*inputs, *v, *omega)
