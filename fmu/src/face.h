@@ -15,6 +15,12 @@
 #define REQUIRE(pointer)                                                                                               \
     if (!(pointer)) return (FMI_STATUS)instance_log(I, STATUS_ERROR, "%s: %s is NULL", __func__, #pointer)
 
+/* Ends the call when it is about no variables; else it needs both arrays. */
+#define REQUIRE_VALUES(references, values)                                                                             \
+    if (!count) return (FMI_STATUS)STATUS_OK;                                                                          \
+    REQUIRE(references);                                                                                               \
+    REQUIRE(values)
+
 /* Ends the call for what the model does not have. */
 #define REFUSE(why) return (FMI_STATUS)instance_log(I, STATUS_ERROR, "%s: %s", __func__, why)
 

@@ -94,17 +94,13 @@ fmi2Status fmi2Reset(fmi2Component component) {
 
 fmi2Status fmi2GetReal(fmi2Component component, const fmi2ValueReference vr[], size_t count, fmi2Real value[]) {
     INSTANCE(component, MODES_ANY);
-    if (!count) return fmi2OK;
-    REQUIRE(vr);
-    REQUIRE(value);
+    REQUIRE_VALUES(vr, value);
     return (fmi2Status)instance_get_floats(I, vr, count, value, count, __func__);
 }
 
 fmi2Status fmi2SetReal(fmi2Component component, const fmi2ValueReference vr[], size_t count, const fmi2Real value[]) {
     INSTANCE(component, MODES_ANY);
-    if (!count) return fmi2OK;
-    REQUIRE(vr);
-    REQUIRE(value);
+    REQUIRE_VALUES(vr, value);
     return (fmi2Status)instance_set_floats(I, vr, count, value, count, __func__);
 }
 
@@ -146,35 +142,27 @@ static fmi2Status set_integers(Instance *I, Find *find, const fmi2ValueReference
 
 fmi2Status fmi2GetInteger(fmi2Component component, const fmi2ValueReference vr[], size_t count, fmi2Integer value[]) {
     INSTANCE(component, MODES_ANY);
-    if (!count) return fmi2OK;
-    REQUIRE(vr);
-    REQUIRE(value);
+    REQUIRE_VALUES(vr, value);
     return get_integers(I, find_integer, vr, count, value, __func__);
 }
 
 fmi2Status fmi2SetInteger(fmi2Component component, const fmi2ValueReference vr[], size_t count,
                           const fmi2Integer value[]) {
     INSTANCE(component, MODES_ANY);
-    if (!count) return fmi2OK;
-    REQUIRE(vr);
-    REQUIRE(value);
+    REQUIRE_VALUES(vr, value);
     return set_integers(I, find_integer, vr, count, value, __func__);
 }
 
 fmi2Status fmi2GetBoolean(fmi2Component component, const fmi2ValueReference vr[], size_t count, fmi2Boolean value[]) {
     INSTANCE(component, MODES_ANY);
-    if (!count) return fmi2OK;
-    REQUIRE(vr);
-    REQUIRE(value);
+    REQUIRE_VALUES(vr, value);
     return get_integers(I, find_boolean, vr, count, value, __func__);
 }
 
 fmi2Status fmi2SetBoolean(fmi2Component component, const fmi2ValueReference vr[], size_t count,
                           const fmi2Boolean value[]) {
     INSTANCE(component, MODES_ANY);
-    if (!count) return fmi2OK;
-    REQUIRE(vr);
-    REQUIRE(value);
+    REQUIRE_VALUES(vr, value);
     return set_integers(I, find_boolean, vr, count, value, __func__);
 }
 

@@ -7,18 +7,14 @@
 fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
                           fmi3Float64 values[], size_t size) {
     INSTANCE(instance, MODES_READ);
-    if (!count) return fmi3OK;
-    REQUIRE(references);
-    REQUIRE(values);
+    REQUIRE_VALUES(references, values);
     return (fmi3Status)instance_get_floats(I, references, count, values, size, __func__);
 }
 
 fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
                           const fmi3Float64 values[], size_t size) {
     INSTANCE(instance, MODES_ANY);
-    if (!count) return fmi3OK;
-    REQUIRE(references);
-    REQUIRE(values);
+    REQUIRE_VALUES(references, values);
     return (fmi3Status)instance_set_floats(I, references, count, values, size, __func__);
 }
 
@@ -27,9 +23,7 @@ fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference refere
     fmi3Status fmi3Get##NAME(fmi3Instance instance, const fmi3ValueReference references[], size_t count,               \
                              FMI_TYPE values[], size_t size) {                                                         \
         INSTANCE(instance, MODES_READ);                                                                                \
-        if (!count) return fmi3OK;                                                                                     \
-        REQUIRE(references);                                                                                           \
-        REQUIRE(values);                                                                                               \
+        REQUIRE_VALUES(references, values);                                                                            \
         const Status status = instance_check_size(I, TYPE, references, count, size, __func__);                         \
         for (size_t i = 0; status == STATUS_OK && i < count; i++) {                                                    \
             const Variable *variable = instance_variable(I, TYPE, references[i], __func__);                            \
@@ -42,9 +36,7 @@ fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference refere
     fmi3Status fmi3Set##NAME(fmi3Instance instance, const fmi3ValueReference references[], size_t count,               \
                              const FMI_TYPE values[], size_t size) {                                                   \
         INSTANCE(instance, MODES_ANY);                                                                                 \
-        if (!count) return fmi3OK;                                                                                     \
-        REQUIRE(references);                                                                                           \
-        REQUIRE(values);                                                                                               \
+        REQUIRE_VALUES(references, values);                                                                            \
         Status status = instance_check_size(I, TYPE, references, count, size, __func__);                               \
         for (int assign = 0; assign < 2; assign++) {                                                                   \
             const FMI_TYPE *value = values;                                                                            \
