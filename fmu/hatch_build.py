@@ -39,7 +39,7 @@ class FmuBuildHook(BuildHookInterface[Any]):
         """Builds into the package folder: hatchling and an editable installation find it there."""
         if self.target_name != "wheel":
             return
-        from laglab_fmu.build import build_fmus  # needs what `dependencies` asks for
+        from laglab_fmu.archive.build import build_fmus  # needs what `dependencies` asks for
 
         build_fmus(HERE / "laglab_fmu", PLATFORMS if _for_all_platforms() else ())
         build_data["pure_python"] = _for_all_platforms()

@@ -10,7 +10,7 @@ from fmpy import simulate_fmu
 from fmpy.util import read_csv, write_csv
 
 from laglab_fmu import RobotParameters, fmu_path
-from laglab_fmu.description import STOP_TIME
+from laglab_fmu.archive.description import STOP_TIME
 
 CONTENT = Path(__file__).parent / "content"
 

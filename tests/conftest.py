@@ -7,6 +7,7 @@ import subprocess
 import sys
 import venv
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
@@ -23,6 +24,13 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 Start = Callable[..., "subprocess.Popen[str]"]
+
+
+@pytest.fixture
+def stack() -> Iterator[ExitStack]:
+    """What a test opens on the way, and is closed at its end."""
+    with ExitStack() as opened:
+        yield opened
 
 
 @pytest.fixture

@@ -42,7 +42,7 @@ PARTS = {
     ),
     "queues": Part(
         "gateway/laglab_gateway/link/*.py",
-        tuple(f"tests/gateway/test_{name}.py" for name in ("channel", "core", "any_peer")),
+        ("tests/gateway/link", "tests/gateway/test_core.py", "tests/gateway/test_any_peer.py"),
     ),
     "receiver": Part(
         "protocol/laglab_protocol/framing/*.py",

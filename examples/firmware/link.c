@@ -16,9 +16,8 @@ static LinkEvent command_of(const mavlink_message_t *message) {
     if (command.target_system != ROBOT_SYSTEM || command.target_component != ROBOT_COMPONENT) {
         return (LinkEvent){.kind = LINK_NOTHING};
     }
-    return (LinkEvent){.kind = LINK_COMMAND,
-                       .command = {command.v, command.omega, (int32_t)command.tick},
-                       .length = command.plan};
+    return (LinkEvent){
+        .kind = LINK_COMMAND, .command = {command.v, command.omega, (int32_t)command.tick}, .length = command.plan};
 }
 
 static LinkEvent plan_of(const mavlink_message_t *message) {
@@ -113,30 +112,23 @@ static LinkEvent event_of(const mavlink_message_t *message) {
         return refused(message);
     }
     switch (message->msgid) {
-    case MAVLINK_MSG_ID_HEARTBEAT:
-        return (LinkEvent){.kind = LINK_BEGIN};
-    case MAVLINK_MSG_ID_LAGLAB_SETTINGS:
-        return (LinkEvent){.kind = LINK_SETTINGS};
-    case MAVLINK_MSG_ID_LAGLAB_COMMAND:
-        return command_of(message);
-    case MAVLINK_MSG_ID_LAGLAB_PLAN:
-        return plan_of(message);
-    case MAVLINK_MSG_ID_LAGLAB_RECALL:
-        return recall_of(message);
-    case MAVLINK_MSG_ID_LAGLAB_PROBE:
-        return probe_of(message);
-    case MAVLINK_MSG_ID_COMMAND_LONG:
-        return request_of(mavlink_msg_command_long_get_target_system(message),
-                          mavlink_msg_command_long_get_target_component(message),
-                          mavlink_msg_command_long_get_command(message));
-    case MAVLINK_MSG_ID_COMMAND_INT:
-        return request_of(mavlink_msg_command_int_get_target_system(message),
-                          mavlink_msg_command_int_get_target_component(message),
-                          mavlink_msg_command_int_get_command(message));
-    case MAVLINK_MSG_ID_LAGLAB_END:
-        return (LinkEvent){.kind = LINK_END, .reason = mavlink_msg_laglab_end_get_reason(message)};
-    default:
-        return nothing;
+        case MAVLINK_MSG_ID_HEARTBEAT: return (LinkEvent){.kind = LINK_BEGIN};
+        case MAVLINK_MSG_ID_LAGLAB_SETTINGS: return (LinkEvent){.kind = LINK_SETTINGS};
+        case MAVLINK_MSG_ID_LAGLAB_COMMAND: return command_of(message);
+        case MAVLINK_MSG_ID_LAGLAB_PLAN: return plan_of(message);
+        case MAVLINK_MSG_ID_LAGLAB_RECALL: return recall_of(message);
+        case MAVLINK_MSG_ID_LAGLAB_PROBE: return probe_of(message);
+        case MAVLINK_MSG_ID_COMMAND_LONG:
+            return request_of(mavlink_msg_command_long_get_target_system(message),
+                              mavlink_msg_command_long_get_target_component(message),
+                              mavlink_msg_command_long_get_command(message));
+        case MAVLINK_MSG_ID_COMMAND_INT:
+            return request_of(mavlink_msg_command_int_get_target_system(message),
+                              mavlink_msg_command_int_get_target_component(message),
+                              mavlink_msg_command_int_get_command(message));
+        case MAVLINK_MSG_ID_LAGLAB_END:
+            return (LinkEvent){.kind = LINK_END, .reason = mavlink_msg_laglab_end_get_reason(message)};
+        default: return nothing;
     }
 }
 
@@ -205,8 +197,8 @@ LinkEvent link_next(void) {
 
 size_t link_write_tick(uint8_t *buffer, uint32_t tick, Pose seen, Command in_force, uint8_t before) {
     mavlink_message_t message;
-    mavlink_msg_laglab_measurement_pack(ROBOT_SYSTEM, ROBOT_COMPONENT, &message, seen.x, seen.y, seen.theta,
-                                        in_force.v, in_force.omega, tick, in_force.stamp);
+    mavlink_msg_laglab_measurement_pack(ROBOT_SYSTEM, ROBOT_COMPONENT, &message, seen.x, seen.y, seen.theta, in_force.v,
+                                        in_force.omega, tick, in_force.stamp);
     const size_t size = mavlink_msg_to_send_buffer(buffer, &message);
     mavlink_msg_laglab_tick_pack(ROBOT_SYSTEM, ROBOT_COMPONENT, &message, tick, before);
     return size + mavlink_msg_to_send_buffer(buffer + size, &message);

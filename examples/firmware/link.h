@@ -29,14 +29,14 @@ typedef struct {
         LINK_END
     } kind;
     Command command;
-    uint16_t length;  /* of the plan that belongs to a command */
-    Piece piece;      /* of one */
-    uint16_t request; /* a MAV_CMD */
-    uint32_t first;   /* the first tick to recall */
-    uint16_t count;   /* ticks to recall */
+    uint16_t length;            /* of the plan that belongs to a command */
+    Piece piece;                /* of one */
+    uint16_t request;           /* a MAV_CMD */
+    uint32_t first;             /* the first tick to recall */
+    uint16_t count;             /* ticks to recall */
     uint32_t session, sequence; /* of a probe */
-    uint8_t reason;   /* of an end */
-    const char *why;  /* a frame was refused for its signature */
+    uint8_t reason;             /* of an end */
+    const char *why;            /* a frame was refused for its signature */
 } LinkEvent;
 
 /* From now on sign all that is written, and take nothing that is not signed with this key. */

@@ -95,44 +95,35 @@ static void tell(Robot *robot, const char *why) {
 static bool obey(Robot *robot, LinkEvent event) {
     uint8_t buffer[LINK_LARGEST];
     switch (event.kind) {
-    case LINK_REFUSED:
-        tell(robot, event.why);
-        return true;
-    case LINK_REQUEST:
-        return send(robot, buffer, link_write_refusal(buffer, event.request));
-    case LINK_SETTINGS:
-        return send(robot, buffer, link_write_settings(buffer, (uint16_t)robot->inbox.playout));
-    case LINK_BEGIN:
-        if (!robot->running) {
-            robot->running = true;
-            robot->tick = 0;
-            robot->memory.ticks = 0;
-            inbox_clear(&robot->inbox);
-            robot->owed = 0;
-        }
-        return true;
-    case LINK_RECALL:
-        owe(robot, event.first, event.count < MEMORY_TICKS ? event.count : MEMORY_TICKS);
-        return true;
-    case LINK_PROBE:
-        probe_hear(&robot->probing, event.session, event.sequence, wall_time());
-        return true;
-    case LINK_COMMAND:
-        if (robot->running) {
-            inbox_take_command(&robot->inbox, robot->tick, event.command, event.length);
-        }
-        return true;
-    case LINK_PLAN:
-        if (robot->running) {
-            inbox_take_piece(&robot->inbox, robot->tick, &event.piece);
-        }
-        return true;
-    case LINK_END:
-        robot->running = false;
-        robot->drive = drive_start();
-        return send(robot, buffer, link_write_end(buffer, robot->tick, event.reason));
-    default:
-        return true;
+        case LINK_REFUSED: tell(robot, event.why); return true;
+        case LINK_REQUEST: return send(robot, buffer, link_write_refusal(buffer, event.request));
+        case LINK_SETTINGS: return send(robot, buffer, link_write_settings(buffer, (uint16_t)robot->inbox.playout));
+        case LINK_BEGIN:
+            if (!robot->running) {
+                robot->running = true;
+                robot->tick = 0;
+                robot->memory.ticks = 0;
+                inbox_clear(&robot->inbox);
+                robot->owed = 0;
+            }
+            return true;
+        case LINK_RECALL: owe(robot, event.first, event.count < MEMORY_TICKS ? event.count : MEMORY_TICKS); return true;
+        case LINK_PROBE: probe_hear(&robot->probing, event.session, event.sequence, wall_time()); return true;
+        case LINK_COMMAND:
+            if (robot->running) {
+                inbox_take_command(&robot->inbox, robot->tick, event.command, event.length);
+            }
+            return true;
+        case LINK_PLAN:
+            if (robot->running) {
+                inbox_take_piece(&robot->inbox, robot->tick, &event.piece);
+            }
+            return true;
+        case LINK_END:
+            robot->running = false;
+            robot->drive = drive_start();
+            return send(robot, buffer, link_write_end(buffer, robot->tick, event.reason));
+        default: return true;
     }
 }
 

@@ -20,7 +20,7 @@ from laglab_fmu.errors import (
 from laglab_fmu.parameters import Reading, RobotParameters
 
 if TYPE_CHECKING:
-    from laglab_fmu.build import build_fmus
+    from laglab_fmu.archive.build import build_fmus
     from laglab_fmu.fleet import Fleet
     from laglab_fmu.robot import Robot
     from laglab_fmu.slave import fleet_path, fmu_path
@@ -46,7 +46,7 @@ __all__ = [
 _NEED_FMPY = {
     "Fleet": "fleet",
     "Robot": "robot",
-    "build_fmus": "build",
+    "build_fmus": "archive.build",
     "fleet_path": "slave",
     "fmu_path": "slave",
 }

@@ -21,29 +21,33 @@ from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Slave
 
 from laglab_fmu.compiler import host_platform
-from laglab_fmu.description import token
 from laglab_fmu.errors import CallError, FmuNotBuiltError
-from laglab_fmu.models import FLEET_NAME
+from laglab_fmu.models import FLEET_NAME, ROBOT, Kind, Role, token
 from laglab_fmu.parameters import RobotParameters, values
-from laglab_fmu.variables import MODEL_NAME, REFERENCE, Kind, parameter_names
 
 VERSIONS = (2, 3)
+
+
+def _parameters(*kinds: Kind) -> list[str]:
+    return [v.name for v in ROBOT.variables if v.role is Role.PARAMETER and v.kind in kinds]
+
+
 _SETTERS_2 = {
-    "setReal": parameter_names(Kind.FLOAT64),
-    "setInteger": parameter_names(Kind.INT32) + parameter_names(Kind.ENUMERATION),
-    "setBoolean": parameter_names(Kind.BOOLEAN),
+    "setReal": _parameters(Kind.FLOAT64),
+    "setInteger": _parameters(Kind.INT32, Kind.ENUMERATION),
+    "setBoolean": _parameters(Kind.BOOLEAN),
 }
 _SETTERS_3 = {
-    "setFloat64": parameter_names(Kind.FLOAT64),
-    "setInt32": parameter_names(Kind.INT32),
-    "setInt64": parameter_names(Kind.ENUMERATION),
-    "setBoolean": parameter_names(Kind.BOOLEAN),
+    "setFloat64": _parameters(Kind.FLOAT64),
+    "setInt32": _parameters(Kind.INT32),
+    "setInt64": _parameters(Kind.ENUMERATION),
+    "setBoolean": _parameters(Kind.BOOLEAN),
 }
 Call = Callable[[], int]
 """An FMI function with all its arguments; gives its status, 0 when it did what it was asked."""
 
 
-def fmu_path(version: int, name: str = MODEL_NAME) -> Path:
+def fmu_path(version: int, name: str = ROBOT.name) -> Path:
     """The installed Robot2.fmu or Robot3.fmu, or another robot's.
 
     Raises:
@@ -93,11 +97,11 @@ class Slave2:
 
     def __init__(self, folder: str) -> None:
         platform = host_platform()
-        library = Path(folder, "binaries", platform.fmi2_folder, MODEL_NAME + platform.suffix)
+        library = Path(folder, "binaries", platform.fmi2_folder, ROBOT.name + platform.suffix)
         self.log: list[str] = []
         self.fmu = FMU2Slave(
-            guid=token(f"{MODEL_NAME}2"),
-            modelIdentifier=MODEL_NAME,
+            guid=token(f"{ROBOT.name}2"),
+            modelIdentifier=ROBOT.name,
             unzipDirectory=folder,
             libraryPath=str(library),
         )
@@ -112,7 +116,7 @@ class Slave2:
     def initialize(self, robots: Sequence[RobotParameters]) -> None:
         rows = [robot.by_name() for robot in robots]
         for setter, names in _SETTERS_2.items():
-            getattr(self.fmu, setter)([REFERENCE[name] for name in names], values(rows, names))
+            getattr(self.fmu, setter)(_references(names), values(rows, names))
         self.fmu.setupExperiment(startTime=0.0)
         self.fmu.enterInitializationMode()
         self.fmu.exitInitializationMode()
@@ -124,10 +128,10 @@ class Slave2:
         self.fmu.freeInstance()
 
     def setter(self, names: Sequence[str], array: ctypes.c_void_p, _size: int) -> Call:
-        return self._call("fmi2SetReal", *_references(names), array)
+        return self._call("fmi2SetReal", *_counted(names), array)
 
     def getter(self, names: Sequence[str], array: ctypes.c_void_p, _size: int) -> Call:
-        return self._call("fmi2GetReal", *_references(names), array)
+        return self._call("fmi2GetReal", *_counted(names), array)
 
     def stepper(self, time: ctypes.c_double, step: ctypes.c_double) -> Call:
         return self._call("fmi2DoStep", time, step, ctypes.c_int(1))
@@ -142,7 +146,7 @@ class Slave3:
     def __init__(self, folder: str, fleet: bool = False) -> None:
         self.log: list[str] = []
         self.fleet = fleet
-        name = FLEET_NAME if fleet else MODEL_NAME
+        name = FLEET_NAME if fleet else ROBOT.name
         self.fmu = FMU3Slave(guid=token(f"{name}3"), modelIdentifier=name, unzipDirectory=folder)
         with _unloading_on_failure(self.fmu):
             self.fmu.instantiate(logMessage=self._logged)
@@ -153,11 +157,11 @@ class Slave3:
     def initialize(self, robots: Sequence[RobotParameters]) -> None:
         if self.fleet:
             self.fmu.enterConfigurationMode()
-            self.fmu.setUInt64([REFERENCE["robots"]], [len(robots)])
+            self.fmu.setUInt64(_references(["robots"]), [len(robots)])
             self.fmu.exitConfigurationMode()
         rows = [robot.by_name() for robot in robots]
         for setter, names in _SETTERS_3.items():
-            getattr(self.fmu, setter)([REFERENCE[name] for name in names], values(rows, names))
+            getattr(self.fmu, setter)(_references(names), values(rows, names))
         self.fmu.enterInitializationMode(startTime=0.0)
         self.fmu.exitInitializationMode()
 
@@ -174,7 +178,7 @@ class Slave3:
         return self._on_array("fmi3GetFloat64", names, array, size)
 
     def _on_array(self, call: str, names: Sequence[str], array: ctypes.c_void_p, size: int) -> Call:
-        return self._call(call, *_references(names), array, ctypes.c_size_t(size))
+        return self._call(call, *_counted(names), array, ctypes.c_size_t(size))
 
     def stepper(self, time: ctypes.c_double, step: ctypes.c_double) -> Call:
         flags = [ctypes.byref(ctypes.c_bool()) for _ in range(3)]
@@ -185,9 +189,12 @@ class Slave3:
         return partial(self.fmu.dll[name], ctypes.c_void_p(self.fmu.component), *arguments)
 
 
-def _references(names: Sequence[str]) -> tuple[Any, ctypes.c_size_t]:
-    references = (ctypes.c_uint32 * len(names))(*(REFERENCE[name] for name in names))
-    return references, ctypes.c_size_t(len(names))
+def _references(names: Sequence[str]) -> list[int]:
+    return [ROBOT.reference[name] for name in names]
+
+
+def _counted(names: Sequence[str]) -> tuple[Any, ctypes.c_size_t]:
+    return (ctypes.c_uint32 * len(names))(*_references(names)), ctypes.c_size_t(len(names))
 
 
 @contextmanager

@@ -1,5 +1,5 @@
 /* What differs between the robots that ship: how commands become body speeds.
- * Each has a `model.h`, its variables, and a `drive.c`: this, and `robot_speeds`. */
+ * Each has a `fields.h`, its variables, and a `drive.c`: this, and `robot_speeds`. */
 #ifndef LAGLAB_DRIVE_H
 #define LAGLAB_DRIVE_H
 
@@ -21,8 +21,13 @@ void drive_shake_tangent(const Robot *robot, const Robot *d, const double w[DRIV
 void drive_still(Robot *change);
 void drive_tangent(const Robot *robot, const Robot *d, Robot *change);
 
-static inline double clamp(double value, double limit) {
-    return value > limit ? limit : value < -limit ? -limit : value;
+/* Within a limit, to either side; a limit of zero is none. */
+static inline double limited(double value, double limit) {
+    return limit > 0 && fabs(value) > limit ? copysign(limit, value) : value;
+}
+
+static inline double limited_tangent(double value, double d_value, double limit, double d_limit) {
+    return limit > 0 && fabs(value) > limit ? copysign(1.0, value) * d_limit : d_value;
 }
 
 /* A first-order lag, sampled: from what was reached to what is commanded; without a time constant it is the command. */

@@ -16,8 +16,8 @@ void instance_get_states(const Instance *instance, double states[]) {
 Status instance_set_states(Instance *instance, const double states[]) {
     for (size_t i = 0; i < STATES * instance->robots; i++) {
         if (!isfinite(states[i])) {
-            return instance_log(instance, STATUS_DISCARD, "continuous state %zu (%s) = %g refused: it must be finite", i,
-                                (const char *[]){"x", "y", "theta"}[i / instance->robots], states[i]);
+            return instance_log(instance, STATUS_DISCARD, "continuous state %zu (%s) = %g refused: it must be finite",
+                                i, (const char *[]){"x", "y", "theta"}[i / instance->robots], states[i]);
         }
     }
     for (size_t i = 0; i < instance->robots; i++) {

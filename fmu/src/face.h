@@ -7,13 +7,19 @@
 #define UNUSED(argument) (void)(argument)
 
 /* Names the instance `I`, and ends the call when it is NULL or in none of the `modes`. */
-#define INSTANCE(handle, modes)                                                       \
-    Instance *I = handle;                                                             \
+#define INSTANCE(handle, modes)                                                                                        \
+    Instance *I = handle;                                                                                              \
     if (!I || !instance_allows(I, modes, __func__)) return (FMI_STATUS)STATUS_ERROR
 
 /* Ends the call when an argument is NULL. */
-#define REQUIRE(pointer)                                                              \
+#define REQUIRE(pointer)                                                                                               \
     if (!(pointer)) return (FMI_STATUS)instance_log(I, STATUS_ERROR, "%s: %s is NULL", __func__, #pointer)
+
+/* Ends the call when it is about no variables; else it needs both arrays. */
+#define REQUIRE_VALUES(references, values)                                                                             \
+    if (!count) return (FMI_STATUS)STATUS_OK;                                                                          \
+    REQUIRE(references);                                                                                               \
+    REQUIRE(values)
 
 /* Ends the call for what the model does not have. */
 #define REFUSE(why) return (FMI_STATUS)instance_log(I, STATUS_ERROR, "%s: %s", __func__, why)

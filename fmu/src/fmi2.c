@@ -47,7 +47,8 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     }
     Instance *instance = instance_new(&draft, name, guid, logging);
     if (instance && type != fmi2ModelExchange && type != fmi2CoSimulation) {
-        instance_log(instance, STATUS_ERROR, "%s: type %d is neither model exchange nor co-simulation", __func__, (int)type);
+        instance_log(instance, STATUS_ERROR, "%s: type %d is neither model exchange nor co-simulation", __func__,
+                     (int)type);
         instance_free(instance);
         return NULL;
     }
@@ -58,8 +59,8 @@ void fmi2FreeInstance(fmi2Component component) {
     instance_free(component);
 }
 
-fmi2Status fmi2SetupExperiment(fmi2Component component, fmi2Boolean tolerance_defined, fmi2Real tolerance, fmi2Real start,
-                               fmi2Boolean stop_defined, fmi2Real stop) {
+fmi2Status fmi2SetupExperiment(fmi2Component component, fmi2Boolean tolerance_defined, fmi2Real tolerance,
+                               fmi2Real start, fmi2Boolean stop_defined, fmi2Real stop) {
     UNUSED(tolerance_defined);
     UNUSED(tolerance);
     INSTANCE(component, MODE_INSTANTIATED);
@@ -93,17 +94,13 @@ fmi2Status fmi2Reset(fmi2Component component) {
 
 fmi2Status fmi2GetReal(fmi2Component component, const fmi2ValueReference vr[], size_t count, fmi2Real value[]) {
     INSTANCE(component, MODES_ANY);
-    if (!count) return fmi2OK;
-    REQUIRE(vr);
-    REQUIRE(value);
+    REQUIRE_VALUES(vr, value);
     return (fmi2Status)instance_get_floats(I, vr, count, value, count, __func__);
 }
 
 fmi2Status fmi2SetReal(fmi2Component component, const fmi2ValueReference vr[], size_t count, const fmi2Real value[]) {
     INSTANCE(component, MODES_ANY);
-    if (!count) return fmi2OK;
-    REQUIRE(vr);
-    REQUIRE(value);
+    REQUIRE_VALUES(vr, value);
     return (fmi2Status)instance_set_floats(I, vr, count, value, count, __func__);
 }
 
@@ -145,35 +142,27 @@ static fmi2Status set_integers(Instance *I, Find *find, const fmi2ValueReference
 
 fmi2Status fmi2GetInteger(fmi2Component component, const fmi2ValueReference vr[], size_t count, fmi2Integer value[]) {
     INSTANCE(component, MODES_ANY);
-    if (!count) return fmi2OK;
-    REQUIRE(vr);
-    REQUIRE(value);
+    REQUIRE_VALUES(vr, value);
     return get_integers(I, find_integer, vr, count, value, __func__);
 }
 
 fmi2Status fmi2SetInteger(fmi2Component component, const fmi2ValueReference vr[], size_t count,
                           const fmi2Integer value[]) {
     INSTANCE(component, MODES_ANY);
-    if (!count) return fmi2OK;
-    REQUIRE(vr);
-    REQUIRE(value);
+    REQUIRE_VALUES(vr, value);
     return set_integers(I, find_integer, vr, count, value, __func__);
 }
 
 fmi2Status fmi2GetBoolean(fmi2Component component, const fmi2ValueReference vr[], size_t count, fmi2Boolean value[]) {
     INSTANCE(component, MODES_ANY);
-    if (!count) return fmi2OK;
-    REQUIRE(vr);
-    REQUIRE(value);
+    REQUIRE_VALUES(vr, value);
     return get_integers(I, find_boolean, vr, count, value, __func__);
 }
 
 fmi2Status fmi2SetBoolean(fmi2Component component, const fmi2ValueReference vr[], size_t count,
                           const fmi2Boolean value[]) {
     INSTANCE(component, MODES_ANY);
-    if (!count) return fmi2OK;
-    REQUIRE(vr);
-    REQUIRE(value);
+    REQUIRE_VALUES(vr, value);
     return set_integers(I, find_boolean, vr, count, value, __func__);
 }
 
@@ -185,7 +174,8 @@ fmi2Status fmi2GetString(fmi2Component component, const fmi2ValueReference vr[],
     return fmi2OK;
 }
 
-fmi2Status fmi2SetString(fmi2Component component, const fmi2ValueReference vr[], size_t count, const fmi2String value[]) {
+fmi2Status fmi2SetString(fmi2Component component, const fmi2ValueReference vr[], size_t count,
+                         const fmi2String value[]) {
     INSTANCE(component, MODES_ANY);
     UNUSED(vr);
     UNUSED(value);

@@ -29,8 +29,8 @@ fmi2Status fmi2EnterContinuousTimeMode(fmi2Component component) {
     return fmi2OK;
 }
 
-fmi2Status fmi2CompletedIntegratorStep(fmi2Component component, fmi2Boolean no_state_before, fmi2Boolean *enter_event_mode,
-                                       fmi2Boolean *terminate) {
+fmi2Status fmi2CompletedIntegratorStep(fmi2Component component, fmi2Boolean no_state_before,
+                                       fmi2Boolean *enter_event_mode, fmi2Boolean *terminate) {
     UNUSED(no_state_before);
     INSTANCE(component, MODE_CONTINUOUS_TIME);
     REQUIRE(enter_event_mode);

@@ -19,7 +19,8 @@ static bool intermediate_update(const Instance *instance, double time) {
     const fmi3IntermediateUpdateCallback update = (fmi3IntermediateUpdateCallback)instance->update_callback;
     fmi3Boolean return_early = fmi3False;
     fmi3Float64 return_time = time;
-    update(instance->environment, time, fmi3False, fmi3True, fmi3True, instance->early_return, &return_early, &return_time);
+    update(instance->environment, time, fmi3False, fmi3True, fmi3True, instance->early_return, &return_early,
+           &return_time);
     return return_early;
 }
 
@@ -133,7 +134,8 @@ fmi3Status fmi3EnterStepMode(fmi3Instance instance) {
 }
 
 fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 start, fmi3Float64 step, fmi3Boolean no_state_before,
-                      fmi3Boolean *event_needed, fmi3Boolean *terminate, fmi3Boolean *early_return, fmi3Float64 *last_time) {
+                      fmi3Boolean *event_needed, fmi3Boolean *terminate, fmi3Boolean *early_return,
+                      fmi3Float64 *last_time) {
     UNUSED(no_state_before);
     INSTANCE(instance, MODE_STEP);
     REQUIRE(event_needed);

@@ -4,13 +4,14 @@
 #define FMI_STATUS fmi3Status
 #include "face.h"
 
-#define NO_CLOCKS                                     \
-    UNUSED(references);                               \
-    INSTANCE(instance, MODES_ANY);                    \
-    if (count) REFUSE("the model has no clocks");     \
+#define NO_CLOCKS                                                                                                      \
+    UNUSED(references);                                                                                                \
+    INSTANCE(instance, MODES_ANY);                                                                                     \
+    if (count) REFUSE("the model has no clocks");                                                                      \
     return fmi3OK
 
-fmi3Status fmi3GetClock(fmi3Instance instance, const fmi3ValueReference references[], size_t count, fmi3Clock values[]) {
+fmi3Status fmi3GetClock(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
+                        fmi3Clock values[]) {
     UNUSED(values);
     NO_CLOCKS;
 }
@@ -29,7 +30,8 @@ fmi3Status fmi3GetIntervalDecimal(fmi3Instance instance, const fmi3ValueReferenc
 }
 
 fmi3Status fmi3GetIntervalFraction(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
-                                   fmi3UInt64 counters[], fmi3UInt64 resolutions[], fmi3IntervalQualifier qualifiers[]) {
+                                   fmi3UInt64 counters[], fmi3UInt64 resolutions[],
+                                   fmi3IntervalQualifier qualifiers[]) {
     UNUSED(counters);
     UNUSED(resolutions);
     UNUSED(qualifiers);

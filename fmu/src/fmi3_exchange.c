@@ -42,8 +42,8 @@ fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance instance) {
     return fmi3OK;
 }
 
-fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean no_state_before, fmi3Boolean *enter_event_mode,
-                                       fmi3Boolean *terminate) {
+fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean no_state_before,
+                                       fmi3Boolean *enter_event_mode, fmi3Boolean *terminate) {
     UNUSED(no_state_before);
     INSTANCE(instance, MODE_CONTINUOUS_TIME);
     REQUIRE(enter_event_mode);

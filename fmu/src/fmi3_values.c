@@ -4,21 +4,17 @@
 #define FMI_STATUS fmi3Status
 #include "face.h"
 
-fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference references[], size_t count, fmi3Float64 values[],
-                          size_t size) {
+fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
+                          fmi3Float64 values[], size_t size) {
     INSTANCE(instance, MODES_READ);
-    if (!count) return fmi3OK;
-    REQUIRE(references);
-    REQUIRE(values);
+    REQUIRE_VALUES(references, values);
     return (fmi3Status)instance_get_floats(I, references, count, values, size, __func__);
 }
 
 fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
                           const fmi3Float64 values[], size_t size) {
     INSTANCE(instance, MODES_ANY);
-    if (!count) return fmi3OK;
-    REQUIRE(references);
-    REQUIRE(values);
+    REQUIRE_VALUES(references, values);
     return (fmi3Status)instance_set_floats(I, references, count, values, size, __func__);
 }
 
@@ -26,10 +22,8 @@ fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference refere
 #define GET_AND_SET(NAME, TYPE, FMI_TYPE)                                                                              \
     fmi3Status fmi3Get##NAME(fmi3Instance instance, const fmi3ValueReference references[], size_t count,               \
                              FMI_TYPE values[], size_t size) {                                                         \
-        INSTANCE(instance, MODES_READ);                                                                                 \
-        if (!count) return fmi3OK;                                                                                     \
-        REQUIRE(references);                                                                                           \
-        REQUIRE(values);                                                                                               \
+        INSTANCE(instance, MODES_READ);                                                                                \
+        REQUIRE_VALUES(references, values);                                                                            \
         const Status status = instance_check_size(I, TYPE, references, count, size, __func__);                         \
         for (size_t i = 0; status == STATUS_OK && i < count; i++) {                                                    \
             const Variable *variable = instance_variable(I, TYPE, references[i], __func__);                            \
@@ -42,9 +36,7 @@ fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference refere
     fmi3Status fmi3Set##NAME(fmi3Instance instance, const fmi3ValueReference references[], size_t count,               \
                              const FMI_TYPE values[], size_t size) {                                                   \
         INSTANCE(instance, MODES_ANY);                                                                                 \
-        if (!count) return fmi3OK;                                                                                     \
-        REQUIRE(references);                                                                                           \
-        REQUIRE(values);                                                                                               \
+        REQUIRE_VALUES(references, values);                                                                            \
         Status status = instance_check_size(I, TYPE, references, count, size, __func__);                               \
         for (int assign = 0; assign < 2; assign++) {                                                                   \
             const FMI_TYPE *value = values;                                                                            \
@@ -71,7 +63,7 @@ GET_AND_SET(Boolean, TYPE_BOOLEAN, fmi3Boolean)
         UNUSED(references);                                                                                            \
         UNUSED(values);                                                                                                \
         UNUSED(size);                                                                                                  \
-        INSTANCE(instance, MODES_READ);                                                                                 \
+        INSTANCE(instance, MODES_READ);                                                                                \
         if (count) REFUSE("the model has no variables of this type");                                                  \
         return fmi3OK;                                                                                                 \
     }                                                                                                                  \
@@ -104,8 +96,8 @@ fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference referen
     return fmi3OK;
 }
 
-fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference references[], size_t count, const size_t sizes[],
-                         const fmi3Binary values[], size_t size) {
+fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference references[], size_t count,
+                         const size_t sizes[], const fmi3Binary values[], size_t size) {
     UNUSED(references);
     UNUSED(sizes);
     UNUSED(values);

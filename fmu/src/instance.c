@@ -56,10 +56,15 @@ bool instance_allows(const Instance *instance, int modes, const char *call) {
     static const struct {
         Mode mode;
         const char *name;
-    } NAME[] = {{MODE_INSTANTIATED, "instantiated"}, {MODE_CONFIGURATION, "configuration mode"},
-                {MODE_INITIALIZATION, "initialization mode"}, {MODE_EVENT, "event mode"},
-                {MODE_CONTINUOUS_TIME, "continuous-time mode"}, {MODE_STEP, "step mode"}, {MODE_STEP_EVENT, "event mode"},
-                {MODE_INTERMEDIATE, "intermediate update mode"}, {MODE_TERMINATED, "terminated"}};
+    } NAME[] = {{MODE_INSTANTIATED, "instantiated"},
+                {MODE_CONFIGURATION, "configuration mode"},
+                {MODE_INITIALIZATION, "initialization mode"},
+                {MODE_EVENT, "event mode"},
+                {MODE_CONTINUOUS_TIME, "continuous-time mode"},
+                {MODE_STEP, "step mode"},
+                {MODE_STEP_EVENT, "event mode"},
+                {MODE_INTERMEDIATE, "intermediate update mode"},
+                {MODE_TERMINATED, "terminated"}};
     if (instance->mode & modes) {
         return true;
     }
@@ -78,7 +83,8 @@ static void set_defaults(Robot *robot, int64_t index) {
         const Variable *variable = &VARIABLE[i];
         const int64_t whole = (int64_t)variable->start;
         if (is_settable(variable)) {
-            memcpy((char *)robot + variable->offset, variable->type == TYPE_FLOAT64 ? (const void *)&variable->start : &whole, 8);
+            memcpy((char *)robot + variable->offset,
+                   variable->type == TYPE_FLOAT64 ? (const void *)&variable->start : &whole, 8);
         }
     }
     robot->seed += index; /* robots of a fleet differ unless told otherwise */
@@ -161,7 +167,8 @@ Status instance_set_experiment(Instance *instance, double start_time, double sto
         return instance_log(instance, STATUS_ERROR, "startTime is %g, not a finite time", start_time);
     }
     if (!(start_time <= stop_time)) {
-        return instance_log(instance, STATUS_ERROR, "startTime %g s is not before stopTime, %g s", start_time, stop_time);
+        return instance_log(instance, STATUS_ERROR, "startTime %g s is not before stopTime, %g s", start_time,
+                            stop_time);
     }
     instance->start_time = start_time;
     instance->stop_time = stop_time;

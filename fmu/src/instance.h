@@ -73,14 +73,14 @@ struct Instance {
     void (*callback)(void); /* the importer's logger, in the version's own type */
     void *environment;
     char *name;
-    UpdateFunction update;      /* called at every sample inside a step; NULL for never */
+    UpdateFunction update; /* called at every sample inside a step; NULL for never */
     void (*update_callback)(void);
     bool event_mode;   /* in co-simulation: samples are taken in event mode, not by the step itself ... */
     bool early_return; /* ... which ends at the first, or wherever `update` asks for it */
-    unsigned logged; /* LOG_ categories */
-    bool stale;      /* what follows from inputs, parameters and states is not yet computed */
+    unsigned logged;   /* LOG_ categories */
+    bool stale;        /* what follows from inputs, parameters and states is not yet computed */
     size_t robots;
-    Robot *robot, *before; /* `before` has room for what a step may have to take back */
+    Robot *robot, *before;              /* `before` has room for what a step may have to take back */
     double start_time, stop_time, time; /* without a stop, infinity */
 };
 

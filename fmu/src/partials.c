@@ -51,7 +51,8 @@ static Status check_change(const Instance *instance, uint32_t reference, double 
     if (isfinite(change)) {
         return STATUS_OK;
     }
-    return instance_log(instance, STATUS_ERROR, "%s: the derivative of %s is %g here", call, VARIABLE[reference].name, change);
+    return instance_log(instance, STATUS_ERROR, "%s: the derivative of %s is %g here", call, VARIABLE[reference].name,
+                        change);
 }
 
 Status instance_directional(Instance *instance, const Partials *partials, const double seed[], double sensitivity[],

@@ -9,7 +9,7 @@
 /* Two instants closer than this part of the sample time are the same instant, computed in two ways. */
 static const double TIME_TOLERANCE = 1e-9;
 
-enum { WHEEL_NOISE, MEASUREMENT_NOISE }; /* streams */
+enum { DRIVE_NOISE, MEASUREMENT_NOISE }; /* streams */
 
 void robot_derivatives(Robot *robot) {
     robot->der_x = robot->v * cos(robot->theta);
@@ -62,7 +62,7 @@ static void draw_normal(const Robot *robot, double w[DRIVE_NOISES], double v[3])
     memset(w, 0, DRIVE_NOISES * sizeof *w);
     memset(v, 0, 3 * sizeof *v);
     if (robot->noise) {
-        noise_normal((uint64_t)robot->seed, (uint64_t)robot->sample, WHEEL_NOISE, DRIVE_NOISES, w);
+        noise_normal((uint64_t)robot->seed, (uint64_t)robot->sample, DRIVE_NOISE, DRIVE_NOISES, w);
         noise_normal((uint64_t)robot->seed, (uint64_t)robot->sample, MEASUREMENT_NOISE, 3, v);
     }
 }
@@ -136,10 +136,10 @@ static void start_tangent(const Robot *robot, const Robot *d, Robot *change) {
     change->y = d->y_start;
     change->theta = d->theta_start;
     drive_shake_tangent(robot, d, w, change);
-    change->x_meas = d->x_start + noise_tangent(misread, robot->measurement_variance_x, v[0], d_misread,
-                                                d->measurement_variance_x);
-    change->y_meas = d->y_start + noise_tangent(misread, robot->measurement_variance_y, v[1], d_misread,
-                                                d->measurement_variance_y);
+    change->x_meas =
+        d->x_start + noise_tangent(misread, robot->measurement_variance_x, v[0], d_misread, d->measurement_variance_x);
+    change->y_meas =
+        d->y_start + noise_tangent(misread, robot->measurement_variance_y, v[1], d_misread, d->measurement_variance_y);
     change->theta_meas = d->theta_start + noise_tangent(misread, robot->measurement_variance_theta, v[2], d_misread,
                                                         d->measurement_variance_theta);
 }

@@ -41,8 +41,8 @@ Status instance_save(const Instance *instance, SavedState **state) {
         return instance_log(instance, STATUS_ERROR, "no memory to save the state of %zu robots", instance->robots);
     }
     saved->zero = 0;
-    saved->head = (Head){instance->robots, instance->kind, instance->mode, instance->start_time, instance->stop_time,
-                         instance->time};
+    saved->head = (Head){instance->robots,     instance->kind,      instance->mode,
+                         instance->start_time, instance->stop_time, instance->time};
     memcpy(saved->robot, instance->robot, instance->robots * sizeof(Robot));
     *state = saved;
     return STATUS_OK;
@@ -51,12 +51,14 @@ Status instance_save(const Instance *instance, SavedState **state) {
 Status instance_restore(Instance *instance, const SavedState *state) {
     const Head *head = &state->head;
     if (head->kind != (uint64_t)instance->kind || head->robots != instance->robots) {
-        return instance_log(instance, STATUS_ERROR, "the saved state is of %zu robot(s) in %s, the instance of %zu in %s",
-                            (size_t)head->robots, head->kind == KIND_CO_SIMULATION ? "co-simulation" : "model exchange",
-                            instance->robots, instance->kind == KIND_CO_SIMULATION ? "co-simulation" : "model exchange");
+        return instance_log(instance, STATUS_ERROR,
+                            "the saved state is of %zu robot(s) in %s, the instance of %zu in %s", (size_t)head->robots,
+                            head->kind == KIND_CO_SIMULATION ? "co-simulation" : "model exchange", instance->robots,
+                            instance->kind == KIND_CO_SIMULATION ? "co-simulation" : "model exchange");
     }
     if (head->mode == MODE_STEP_EVENT && !instance->event_mode) {
-        return instance_log(instance, STATUS_ERROR, "the saved state is in event mode, which the instance does not use");
+        return instance_log(instance, STATUS_ERROR,
+                            "the saved state is in event mode, which the instance does not use");
     }
     instance->mode = (Mode)head->mode;
     instance->start_time = head->start_time;
@@ -110,7 +112,8 @@ static uint64_t checksum(const unsigned char *bytes, size_t size) {
 
 Status state_serialize(const Instance *instance, const SavedState *state, unsigned char bytes[], size_t size) {
     if (size < state_size(state)) {
-        return instance_log(instance, STATUS_ERROR, "a serialized state needs %zu bytes, not %zu", state_size(state), size);
+        return instance_log(instance, STATUS_ERROR, "a serialized state needs %zu bytes, not %zu", state_size(state),
+                            size);
     }
     write_words(&state->head, HEAD_WORDS, bytes + WORD);
     write_words(state->robot, state->head.robots * ROBOT_WORDS, bytes + FRONT);
@@ -120,7 +123,8 @@ Status state_serialize(const Instance *instance, const SavedState *state, unsign
 }
 
 static bool head_is_sound(const Head *head) {
-    const int modes = head->kind == KIND_CO_SIMULATION ? MODE_STEP | MODE_STEP_EVENT : MODE_EVENT | MODE_CONTINUOUS_TIME;
+    const int modes =
+        head->kind == KIND_CO_SIMULATION ? MODE_STEP | MODE_STEP_EVENT : MODE_EVENT | MODE_CONTINUOUS_TIME;
     const int any = modes | MODES_START | MODE_CONFIGURATION | MODE_TERMINATED;
     const bool one_mode = head->mode != 0 && (head->mode & (head->mode - 1)) == 0;
     return (head->kind == KIND_CO_SIMULATION || head->kind == KIND_MODEL_EXCHANGE) && one_mode &&

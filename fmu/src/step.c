@@ -15,7 +15,8 @@ Status instance_check_stop(const Instance *instance, double time, const char *wh
     if (time - tolerance <= instance->stop_time) {
         return STATUS_OK;
     }
-    return instance_log(instance, STATUS_ERROR, "%s %.17g s is beyond stopTime, %.17g s", what, time, instance->stop_time);
+    return instance_log(instance, STATUS_ERROR, "%s %.17g s is beyond stopTime, %.17g s", what, time,
+                        instance->stop_time);
 }
 
 static bool sample_is_due(const Instance *instance) {
@@ -29,18 +30,20 @@ static bool sample_is_due(const Instance *instance) {
 
 static Status check_step(const Instance *instance, double start, double step) {
     if (!isfinite(start) || !isfinite(step)) {
-        return instance_log(instance, STATUS_ERROR, "communicationStepSize %g at time %g: both must be finite", step, start);
-    }
-    if (step <= 0.0) {
-        return instance_log(instance, STATUS_ERROR, "communicationStepSize %g at time %g: the step must be above zero", step,
+        return instance_log(instance, STATUS_ERROR, "communicationStepSize %g at time %g: both must be finite", step,
                             start);
     }
+    if (step <= 0.0) {
+        return instance_log(instance, STATUS_ERROR, "communicationStepSize %g at time %g: the step must be above zero",
+                            step, start);
+    }
     if (start + step <= start) {
-        return instance_log(instance, STATUS_ERROR, "communicationStepSize %g at time %.17g does not advance it", step, start);
+        return instance_log(instance, STATUS_ERROR, "communicationStepSize %g at time %.17g does not advance it", step,
+                            start);
     }
     if (fabs(start - instance->time) > TIME_TOLERANCE * (fabs(instance->time) + step)) {
-        return instance_log(instance, STATUS_ERROR, "currentCommunicationPoint %.17g: the instance is at time %.17g", start,
-                            instance->time);
+        return instance_log(instance, STATUS_ERROR, "currentCommunicationPoint %.17g: the instance is at time %.17g",
+                            start, instance->time);
     }
     for (size_t i = 0; i < instance->robots; i++) {
         if (step > LONGEST_STEP * instance->robot[i].sample_time) {
@@ -49,7 +52,8 @@ static Status check_step(const Instance *instance, double start, double step) {
         }
     }
     if (instance->event_mode && sample_is_due(instance)) {
-        return instance_log(instance, STATUS_ERROR, "a sample is due at time %.17g: it is taken in event mode", instance->time);
+        return instance_log(instance, STATUS_ERROR, "a sample is due at time %.17g: it is taken in event mode",
+                            instance->time);
     }
     return instance_check_stop(instance, start + step, "the end of the step,");
 }

@@ -38,7 +38,8 @@ Status instance_check_size(const Instance *instance, Type type, const uint32_t r
         expected += instance_size(instance, variable);
     }
     if (size != expected) {
-        return instance_log(instance, STATUS_ERROR, "%s: %zu values given for variables that hold %zu", call, size, expected);
+        return instance_log(instance, STATUS_ERROR, "%s: %zu values given for variables that hold %zu", call, size,
+                            expected);
     }
     return STATUS_OK;
 }
@@ -59,8 +60,8 @@ Status instance_check_value(const Instance *instance, const char *name, size_t r
     if (isfinite(value)) {
         return STATUS_OK;
     }
-    return instance_log(instance, STATUS_ERROR, "%s of robot %zu is %g: its inputs or parameters are too large", name, robot,
-                        value);
+    return instance_log(instance, STATUS_ERROR, "%s of robot %zu is %g: its inputs or parameters are too large", name,
+                        robot, value);
 }
 
 Status instance_check_finite(Instance *instance) {
@@ -109,7 +110,8 @@ static Status check_settable(const Instance *instance, const Variable *variable,
         const char *when;
     } ALLOWED[] = {
         [ROLE_PARAMETER] = {MODES_START, "before the simulation starts"},
-        [ROLE_TUNABLE] = {MODES_START | MODE_EVENT | MODE_STEP | MODE_STEP_EVENT, "before the start, at events and between steps"},
+        [ROLE_TUNABLE] = {MODES_START | MODE_EVENT | MODE_STEP | MODE_STEP_EVENT,
+                          "before the start, at events and between steps"},
         [ROLE_INPUT] = {MODES_START | MODES_RUN, "before the simulation ends"},
         [ROLE_ROBOTS] = {MODE_CONFIGURATION, "in configuration mode"},
         [ROLE_DERIVATIVE] = {0, NULL},
@@ -127,13 +129,14 @@ static Status check_settable(const Instance *instance, const Variable *variable,
 
 static Status check_range(const Instance *instance, const Variable *variable, double value, const char *call) {
     if (!isfinite(value)) {
-        return instance_log(instance, STATUS_DISCARD, "%s: %s = %g refused: it must be finite", call, variable->name, value);
+        return instance_log(instance, STATUS_DISCARD, "%s: %s = %g refused: it must be finite", call, variable->name,
+                            value);
     }
     if (value >= variable->minimum && value <= variable->maximum) {
         return STATUS_OK;
     }
-    return instance_log(instance, STATUS_DISCARD, "%s: %s = %g refused: it must be in [%g, %g]", call,
-                        variable->name, value, variable->minimum, variable->maximum);
+    return instance_log(instance, STATUS_DISCARD, "%s: %s = %g refused: it must be in [%g, %g]", call, variable->name,
+                        value, variable->minimum, variable->maximum);
 }
 
 static Status check_floats(const Instance *instance, const uint32_t references[], size_t count, const double values[],
@@ -192,4 +195,3 @@ Status instance_set_integer(Instance *instance, const Variable *variable, size_t
     instance->stale = true;
     return STATUS_OK;
 }
-

@@ -43,7 +43,7 @@ from laglab_gateway.record.files import (
     FileRecorder,
     Row,
 )
-from laglab_gateway.record.lateness import Lateness, TimingReport
+from laglab_gateway.record.lateness import TimingReport
 from laglab_gateway.record.recorder import MemoryRecorder, Recorder, Tapped
 from laglab_gateway.record.rows import FOLLOWED, ArrivalRow, ClaimRow, TimingRow, claimed
 from laglab_gateway.record.trace import (
@@ -94,7 +94,6 @@ __all__ = [
     "GatewayConfig",
     "GatewayError",
     "Impairments",
-    "Lateness",
     "LinkReport",
     "LinkRow",
     "MemoryRecorder",

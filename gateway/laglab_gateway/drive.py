@@ -15,14 +15,10 @@ from enum import Enum, auto
 from typing import Annotated
 
 from laglab_gateway.values import Positive, Seconds, checked, described
-from laglab_protocol import NO_COMMAND, Command, Planned
+from laglab_protocol import NO_COMMAND, Command, Planned, Speeds
 
 FASTEST = 1e6
 """[m/s], [rad/s] Nothing drives faster, whatever the limits: the wheels' speeds must be finite."""
-
-
-Speeds = tuple[float, float]
-"""v [m/s], omega [rad/s]."""
 
 
 class Mode(Enum):

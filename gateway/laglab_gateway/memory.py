@@ -5,7 +5,7 @@ from collections import OrderedDict
 from collections.abc import Iterable, Iterator
 from itertools import islice
 
-from laglab_protocol import RECALLED, Applied, Recall
+from laglab_protocol import RECALLED, Applied, Recall, Speeds
 
 KEPT = 1024
 """Ticks; a station that heard nothing for longer meets the robot anew."""
@@ -15,8 +15,6 @@ APPLIED_A_TICK = 5
 MOST_OWED = KEPT // RECALLED + 1
 
 UNKNOWN = (math.nan, math.nan)
-Speeds = tuple[float, float]
-"""v [m/s], omega [rad/s]."""
 
 
 class SpeedMemory:

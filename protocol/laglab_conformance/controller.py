@@ -39,9 +39,8 @@ class ControllerSession(Session):
     tick = 0
 
     def connect(self) -> None:
-        if self.listen(self.waits.appear, lambda frame: isinstance(frame.message, Heartbeat)):
-            return
-        raise NoReactionError("no HEARTBEAT came")
+        if self.wait_for(Heartbeat, self.waits.appear) is None:
+            raise NoReactionError("no HEARTBEAT came")
 
     def stimulus(self) -> Message:
         return Tick(self.tick, 0)
@@ -56,7 +55,7 @@ class ControllerSession(Session):
         """What came back, up to the command, for these in one datagram. Raises NoReactionError."""
         before = len(self.heard)
         self.send(*messages)
-        if self.listen(self.waits.react, lambda frame: isinstance(frame.message, Command)):
+        if self.wait_for(Command, self.waits.react):
             came = [frame.message for frame in self.heard[before:]]
             return [message for message in came if isinstance(message, Said)]
         raise NoReactionError(f"no answer to {messages[-1]}")
@@ -92,23 +91,21 @@ def _stamp(message: Said, tick: int) -> int:
 
 
 def _aims(session: ControllerSession) -> str | None:
-    for frame in session.heard:
-        if isinstance(frame.message, Command) and _target(frame.message) != (1, 1):
-            return f"a command is meant for {_target(frame.message)}, the robot is (1, 1)"
+    us = session.system, session.component
+    for command in session.told(Command):
+        target = command.target_system, command.target_component
+        if target != us:
+            return f"a command is meant for {target}, the robot is {us}"
     return None
 
 
-def _target(command: Command) -> tuple[int, int]:
-    return command.target_system, command.target_component
-
-
 def _finite(session: ControllerSession) -> str | None:
-    for frame in session.heard:
-        told = frame.message
-        if isinstance(told, Command) and not all(map(math.isfinite, told.speeds)):
+    for told in session.told(Command):
+        if not all(map(math.isfinite, told.speeds)):
             return f"{told}"
-        if isinstance(told, Plan) and not all(map(math.isfinite, told.v + told.omega)):
-            return f"{told}"
+    for plan in session.told(Plan):
+        if not all(map(math.isfinite, plan.v + plan.omega)):
+            return f"{plan}"
     return None
 
 
@@ -147,12 +144,8 @@ def _answers_once(session: ControllerSession) -> str | None:
     tick = session.tick
     session.exchange()
     session.quiet()
-    answers = [
-        frame.message
-        for frame in session.heard
-        if isinstance(frame.message, Command) and frame.message.tick == tick
-    ]
-    return None if len(answers) == 1 else f"tick {tick} is answered {len(answers)} times"
+    count = sum(answer.tick == tick for answer in session.told(Command))
+    return None if count == 1 else f"tick {tick} is answered {count} times"
 
 
 def _missing(session: Session, _: object) -> bytes:
@@ -181,9 +174,9 @@ def _ends(session: ControllerSession) -> str | None:
     """It answers END once with the same."""
     end, before = End(session.tick - 1, EndReason.COMPLETED), len(session.heard)
     session.send(end)
-    session.listen(session.waits.react, lambda frame: isinstance(frame.message, End))
+    session.wait_for(End, session.waits.react)
     session.quiet()
-    answers = [each.message for each in session.heard[before:] if isinstance(each.message, End)]
+    answers = session.told(End, before)
     if len(answers) != 1:
         return f"answered {len(answers)} times"
     return None if answers[0] == end else f"{end} is answered with {answers[0]}"
@@ -195,13 +188,13 @@ def _asks(session: ControllerSession) -> str | None:
         tick, before = session.tick, len(session.heard)
         session.answer_to(*([] if missed else [_sample(tick)]), Tick(tick, int(not missed)))
         session.go_on()
-        if any(isinstance(each.message, Recall) for each in session.heard[before:]):
+        if session.told(Recall, before):
             return None
     return "it does not ask what was in force at ticks of which it heard nothing"
 
 
 def _tells_settings(session: ControllerSession) -> str | None:
-    told = [each.message for each in session.heard if isinstance(each.message, Settings)]
+    told = session.told(Settings)
     if not told:
         return "it calls without LAGLAB_SETTINGS"
     return None if told[0].sample_time > 0 else f"its sample time is {told[0].sample_time}"

@@ -3,9 +3,9 @@
 import time
 
 from laglab_conformance.items import Item
-from laglab_conformance.robot import RobotSession, is_tick
+from laglab_conformance.robot import RobotSession
 from laglab_conformance.session import DoesNotApplyError, NoReactionError
-from laglab_protocol.messages.loop import End, EndReason
+from laglab_protocol.messages.loop import End, EndReason, Tick
 
 SILENCE = 3.0
 """[s] After so much of it a robot in lock-step gives its station up."""
@@ -16,19 +16,18 @@ def _answers(session: RobotSession) -> str | None:
     end = End(session.tick, EndReason.INTERRUPTED)
     session.send(end)
     session.over = True
-    answer = session.listen(session.waits.react, lambda frame: isinstance(frame.message, End))
+    answer = session.wait_for(End, session.waits.react)
     if answer is None:
         return "END is not answered"
-    assert isinstance(answer.message, End)
-    if answer.message.reason != end.reason:
-        return f"END with reason {end.reason} is answered with {answer.message.reason}"
+    if answer.reason != end.reason:
+        return f"END with reason {end.reason} is answered with {answer.reason}"
     session.quiet()
-    return "it goes on after END" if session.listen(session.refusal, is_tick) else None
+    return "it goes on after END" if session.wait_for(Tick, session.refusal) else None
 
 
 def _ends(session: RobotSession) -> list[End]:
     """The answers to END, and what else of it came."""
-    ends = [frame.message for frame in session.heard if isinstance(frame.message, End)]
+    ends = session.told(End)
     if not ends:
         raise DoesNotApplyError("END is not answered")
     return ends
@@ -54,7 +53,7 @@ def _gives_up(session: RobotSession) -> str | None:
             "its run is over and no heartbeat begins another: start it again, and say --silent"
         ) from error
     began = time.monotonic()
-    while session.listen(session.waits.react / 2, is_tick):
+    while session.wait_for(Tick, session.waits.react / 2):
         silent = time.monotonic() - began
         if silent > SILENCE + session.waits.react:
             return f"it still repeats its tick after {silent:.0f} s of silence"

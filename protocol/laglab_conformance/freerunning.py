@@ -20,14 +20,12 @@ from laglab_conformance.robot import (
     creep,
     creeps,
     is_after,
-    is_tick,
-    ticks,
 )
 from laglab_conformance.services import SERVICES
 from laglab_conformance.session import DoesNotApplyError, NoReactionError
 from laglab_conformance.stamps import STAMPED
 from laglab_protocol.framing.frame import Frame
-from laglab_protocol.messages.loop import Measurement
+from laglab_protocol.messages.loop import Measurement, Tick
 
 UNEVEN = 0.25
 """By how much the ticks a second may differ within a few seconds, as a share."""
@@ -77,7 +75,7 @@ class FreeRunningSession(RobotSession):
 
 def _goes_on(session: FreeRunningSession) -> str | None:
     for _ in range(3):
-        last = ticks(session)[-1].tick
+        last = session.told(Tick)[-1].tick
         if not session.listen(session.waits.react, partial(is_after, last)):
             return f"no tick comes after {last}, though it is to wait for nobody"
     return None
@@ -99,11 +97,11 @@ def _rate(session: FreeRunningSession) -> tuple[float, float]:
     start, over = len(session.heard), began + session.waits.react / 2
     while time.monotonic() < over:
         # As a station does: a robot may slow down without.
-        session.send(session.command(ticks(session)[-1].tick))
+        session.send(session.command(session.told(Tick)[-1].tick))
         session.listen(COMMAND_EVERY, lambda _: False)
     ended, last = _next_tick(session)
     heard = zip(session.heard[start:], session.heard_at[start:], strict=True)
-    at = [began, *(when for frame, when in heard if is_tick(frame))]
+    at = [began, *(when for frame, when in heard if isinstance(frame.message, Tick))]
     longest = max(after - before for before, after in pairwise(at))
     return (last - first) / (ended - began), longest / (ended - began)
 
@@ -112,11 +110,11 @@ def _next_tick(session: FreeRunningSession) -> tuple[float, int]:
     """When the next one came that had to be waited for: what had piled up tells no time."""
     for _ in range(MOST_PILED_UP):
         asked = time.monotonic()
-        if session.listen(session.waits.react, is_tick) is None:
+        if session.wait_for(Tick, session.waits.react) is None:
             raise NoReactionError("no tick comes any more")
         if time.monotonic() - asked > AT_ONCE:
             break
-    return time.monotonic(), ticks(session)[-1].tick
+    return time.monotonic(), session.told(Tick)[-1].tick
 
 
 def _earlier(session: FreeRunningSession) -> str | None:
@@ -166,7 +164,7 @@ def _tells_of(stamp: int, frame: Frame) -> bool:
 
 
 def _one_by_one(session: FreeRunningSession) -> str | None:
-    for before, after in pairwise(ticks(session)):
+    for before, after in pairwise(session.told(Tick)):
         if after.tick != before.tick + 1:
             return f"tick {after.tick} follows tick {before.tick}"
     return None

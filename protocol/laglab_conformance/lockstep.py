@@ -17,8 +17,6 @@ from laglab_conformance.robot import (
     RobotSession,
     batches,
     is_after,
-    is_tick,
-    ticks,
 )
 from laglab_conformance.services import SERVICES
 from laglab_conformance.session import DoesNotApplyError, NoReactionError, Session
@@ -57,13 +55,12 @@ class LockstepSession(RobotSession):
 def _repeats(session: LockstepSession) -> str | None:
     """Two more of the same, while nobody answers; each whole."""
     for _ in range(2):
-        frame = session.listen(session.waits.react, is_tick)
-        if frame is None:
+        came = session.wait_for(Tick, session.waits.react)
+        if came is None:
             return f"tick {session.tick} is not repeated"
-        assert isinstance(frame.message, Tick)
-        if frame.message.tick != session.tick:
+        if came.tick != session.tick:
             return (
-                f"tick {frame.message.tick} came, though nobody answered {session.tick}; "
+                f"tick {came.tick} came, though nobody answered {session.tick}; "
                 "has it a clock of its own (--pace realtime)?"
             )
     return None
@@ -82,7 +79,7 @@ def _repeats_the_same(session: LockstepSession) -> str | None:
 def _one_by_one(session: LockstepSession) -> str | None:
     for _ in range(5):
         session.exchange()
-    for before, after in pairwise(ticks(session)):
+    for before, after in pairwise(session.told(Tick)):
         if after.tick - before.tick not in (0, 1):
             return f"tick {after.tick} follows tick {before.tick}"
     return None

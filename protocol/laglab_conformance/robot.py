@@ -10,7 +10,7 @@ from msgspec.structs import replace
 
 from laglab_conformance.forge import Forged
 from laglab_conformance.items import Item, refused
-from laglab_conformance.session import DoesNotApplyError, NoReactionError, Session, Waits
+from laglab_conformance.session import DoesNotApplyError, M, NoReactionError, Session, Waits
 from laglab_protocol.endpoints import Endpoint
 from laglab_protocol.framing.frame import Frame
 from laglab_protocol.messages.base import Message
@@ -63,9 +63,8 @@ class RobotSession(Session):
         deadline = time.monotonic() + seconds
         while time.monotonic() < deadline:
             self.send(STATION_HEARTBEAT)
-            if frame := self.listen(self.waits.refuse, is_tick):
-                assert isinstance(frame.message, Tick)
-                self.tick = frame.message.tick
+            if begun := self.wait_for(Tick, self.waits.refuse):
+                self.tick = begun.tick
                 return
         raise NoReactionError("no LAGLAB_TICK, though a station sent heartbeats")
 
@@ -87,42 +86,32 @@ class RobotSession(Session):
         return self.listen(seconds, until)
 
     def go_on(self) -> None:
-        self.tick = max(each.tick for each in ticks(self))
+        self.tick = max(each.tick for each in self.told(Tick))
 
-    def ask(self, question: Message, answer: type[Message]) -> Frame:
+    def ask(self, question: Message, kind: type[M]) -> M:
         """The first answer of this kind. Raises NoReactionError."""
         self.send(question)
-        found = self.listen(self.waits.react, lambda frame: isinstance(frame.message, answer))
-        if found is None:
-            raise NoReactionError(f"no {answer.__name__} after {type(question).__name__}")
-        return found
+        answer = self.wait_for(kind, self.waits.react)
+        if answer is None:
+            raise NoReactionError(f"no {kind.__name__} after {type(question).__name__}")
+        return answer
 
     def order(self, number: int, first: float = 0.0) -> CommandAck:
         """A command (MAV_CMD) and its acknowledgement."""
         long = CommandLong(first, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, number, *self.peer, 0)
-        ack = self.ask(long, CommandAck).message
-        assert isinstance(ack, CommandAck)
+        ack = self.ask(long, CommandAck)
         if ack.command != number:
             raise NoReactionError(f"command {number} acknowledged as {ack.command}")
         return ack
-
-
-def is_tick(frame: Frame) -> bool:
-    return isinstance(frame.message, Tick)
 
 
 def is_after(tick: int, frame: Frame) -> bool:
     return isinstance(frame.message, Tick) and frame.message.tick > tick
 
 
-def ticks(session: RobotSession) -> list[Tick]:
-    return [frame.message for frame in session.heard if isinstance(frame.message, Tick)]
-
-
 def measurements(session: RobotSession) -> list[Measurement]:
     """All that came, by the ticks at which they were sampled."""
-    found = [frame.message for frame in session.heard if isinstance(frame.message, Measurement)]
-    return sorted(found, key=lambda measurement: measurement.tick)
+    return sorted(session.told(Measurement), key=lambda measurement: measurement.tick)
 
 
 def batches(session: RobotSession) -> list[tuple[Batch, Tick]]:
@@ -148,14 +137,16 @@ def creep(session: RobotSession) -> Measurement | None:
         if any(map(creeps, session.heard[before:])):
             break
         session.exchange()
-    told = (frame.message for frame in session.heard[before:] if creeps(frame))
-    return next((each for each in told if isinstance(each, Measurement)), None)
+    return next(filter(_is_creeping, session.told(Measurement, before)), None)
 
 
 def creeps(frame: Frame) -> bool:
     """Whether it tells that the robot creeps, as far as the robot can count."""
-    told = frame.message
-    return isinstance(told, Measurement) and math.isclose(told.v, CREEP, rel_tol=ROUNDED)
+    return isinstance(frame.message, Measurement) and _is_creeping(frame.message)
+
+
+def _is_creeping(told: Measurement) -> bool:
+    return math.isclose(told.v, CREEP, rel_tol=ROUNDED)
 
 
 def _begins(session: RobotSession) -> str | None:
@@ -179,8 +170,7 @@ def _meant_for(system: int, session: Session, _: Forged) -> bytes:
 
 def _settings(session: RobotSession) -> str | None:
     """It answers LAGLAB_SETTINGS with its own."""
-    told = session.ask(Settings(math.nan), Settings).message
-    assert isinstance(told, Settings)
+    told = session.ask(Settings(math.nan), Settings)
     return None if told.sample_time > 0 else f"its sample time is {told.sample_time}"
 
 
@@ -195,10 +185,7 @@ def _recalls(session: RobotSession) -> str | None:
     while time.monotonic() < deadline:
         session.send(asked, session.command(session.tick, estimates=1))  # which counts the question
         session.reacts(session.waits.react)
-        told = [
-            each.message for each in session.heard[before:] if isinstance(each.message, Applied)
-        ]
-        if told:
+        if told := session.told(Applied, before):
             return _as_asked(told[0], asked, newest)
     return "LAGLAB_RECALL is not answered"
 

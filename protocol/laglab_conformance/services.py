@@ -22,9 +22,8 @@ def _reports(number: int, kind: type[Message]) -> Item[RobotSession]:
         ack = session.order(mavlink.MAV_CMD_REQUEST_MESSAGE, float(number))
         if ack.result != mavlink.MAV_RESULT_ACCEPTED:
             return f"refused with MAV_RESULT {ack.result}"
-        if any(isinstance(frame.message, kind) for frame in session.heard[before:]):
-            return None  # it came together with the acknowledgement
-        if session.listen(session.waits.react, lambda frame: isinstance(frame.message, kind)):
+        # It may have come together with the acknowledgement.
+        if session.told(kind, before) or session.wait_for(kind, session.waits.react):
             return None
         return f"accepted, but no {kind.__name__} came"
 
@@ -47,23 +46,16 @@ def _acknowledges_us(session: RobotSession) -> str | None:
 
 
 def _lists_parameters(session: RobotSession) -> str | None:
-    first = session.ask(ParamRequestList(*session.peer), ParamValue).message
-    assert isinstance(first, ParamValue)
+    first = session.ask(ParamRequestList(*session.peer), ParamValue)
     session.quiet()
-    values = {
-        frame.message.param_index: frame.message
-        for frame in session.heard
-        if isinstance(frame.message, ParamValue)
-    }
-    missing = set(range(first.param_count)) - set(values)
+    came = {each.param_index for each in session.told(ParamValue)}
+    missing = set(range(first.param_count)) - came
     return f"{len(missing)} of {first.param_count} did not come" if missing else None
 
 
 def _reads_parameters(session: RobotSession) -> str | None:
-    by_index = session.ask(ParamRequestRead(0, *session.peer, b""), ParamValue).message
-    assert isinstance(by_index, ParamValue)
-    named = ParamRequestRead(-1, *session.peer, by_index.param_id)
-    by_name = session.ask(named, ParamValue).message
+    by_index = session.ask(ParamRequestRead(0, *session.peer, b""), ParamValue)
+    by_name = session.ask(ParamRequestRead(-1, *session.peer, by_index.param_id), ParamValue)
     return None if by_name == by_index else f"{by_index} by index, {by_name} by name"
 
 

@@ -4,7 +4,7 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from laglab_conformance.forge import Forged
 from laglab_protocol.endpoints import Endpoint
@@ -15,6 +15,8 @@ from laglab_protocol.messages.base import Message
 from laglab_protocol.messages.loop import End
 from laglab_protocol.signing.keys import read_key
 from laglab_protocol.signing.signature import Signer, Verifier
+
+M = TypeVar("M", bound=Message)
 
 
 class Waits(NamedTuple):
@@ -66,10 +68,8 @@ class Session(ABC):
     @property
     def ended(self) -> End | None:
         """The peer's word that its run is over, when it was not we who ended it."""
-        if self.over:
-            return None
-        ends = (each.message for each in self.heard if isinstance(each.message, End))
-        return next(ends, None)
+        ends = [] if self.over else self.told(End)
+        return ends[0] if ends else None
 
     @abstractmethod
     def connect(self) -> None:
@@ -97,6 +97,17 @@ class Session(ABC):
     def send(self, *messages: Message) -> None:
         """Send messages in one datagram, as they should be."""
         self.endpoint.send(b"".join(self.forged(message).raw for message in messages))
+
+    def told(self, kind: type[M], since: int = 0) -> list[M]:
+        """The messages of this kind that came, from so many frames on."""
+        messages = (frame.message for frame in self.heard[since:])
+        return [message for message in messages if isinstance(message, kind)]
+
+    def wait_for(self, kind: type[M], seconds: float) -> M | None:
+        """The next message of this kind, None when none comes in time."""
+        found = self.listen(seconds, lambda frame: isinstance(frame.message, kind))
+        message = found.message if found else None
+        return message if isinstance(message, kind) else None
 
     def listen(self, seconds: float, until: Callable[[Frame], bool]) -> Frame | None:
         """The first frame for which `until` holds, None when none came in time."""

@@ -11,7 +11,6 @@ from laglab_conformance.robot import (
     batches,
     creep,
     measurements,
-    ticks,
 )
 from laglab_conformance.session import DoesNotApplyError
 from laglab_protocol.messages.loop import NO_COMMAND, Applied, Measurement, Tick
@@ -60,7 +59,7 @@ def _counts(session: RobotSession) -> str | None:
 def _echoes(session: RobotSession) -> str | None:
     """Each measurement names an earlier command that there was; none moves, but by one before
     ours; and the one that creeps is named as that."""
-    first = ticks(session)[0].tick
+    first = session.told(Tick)[0].tick
     stamp = session.tick
     told = creep(session)
     if told is not None and told.command_tick != stamp:

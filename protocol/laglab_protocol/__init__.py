@@ -55,7 +55,6 @@ from laglab_protocol.messages.loop import (
     LONGEST_PLAN,
     NO_COMMAND,
     NO_PROBE,
-    PLANNED,
     PROBE_FILLER,
     PROBE_LAGS,
     RECALLED,
@@ -104,7 +103,6 @@ from laglab_protocol.messages.standard import (
     CommandLong,
     Heartbeat,
     LocalPositionNed,
-    MessageInterval,
     Odometry,
     ParamError,
     ParamRequestList,
@@ -117,7 +115,7 @@ from laglab_protocol.messages.standard import (
     SystemTime,
     Timesync,
 )
-from laglab_protocol.plans import Assembly, Planned, frames_of
+from laglab_protocol.plans import Assembly, Planned, Speeds, frames_of
 from laglab_protocol.playout import Playout
 from laglab_protocol.ration import LEAST_BYTES, Ration
 from laglab_protocol.refusals import Refusals
@@ -137,7 +135,6 @@ __all__ = [
     "MAV_SEVERITY_WARNING",
     "NO_COMMAND",
     "NO_PROBE",
-    "PLANNED",
     "PROBE_FILLER",
     "PROBE_LAGS",
     "RECALLED",
@@ -189,7 +186,6 @@ __all__ = [
     "LogRequestList",
     "Measurement",
     "Message",
-    "MessageInterval",
     "MissionAck",
     "MissionClearAll",
     "MissionCount",
@@ -236,6 +232,7 @@ __all__ = [
     "SetMode",
     "Settings",
     "SettingsError",
+    "Speeds",
     "Statustext",
     "SysStatus",
     "SystemTime",

@@ -68,7 +68,10 @@ class _Open(NamedTuple):
 
 class Assembly:
     """What belongs to one command comes in several frames, in any order, and some may be lost:
-    then nothing of it is followed."""
+    then nothing of it is followed.
+
+    The rest is given up by later stamps: whoever takes frames sees to it that stamps grow.
+    """
 
     def __init__(self) -> None:
         self._open: dict[int, _Open] = {}

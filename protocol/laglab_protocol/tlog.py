@@ -5,16 +5,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from laglab_protocol.errors import ProtocolError
-from laglab_protocol.framing.frame import (
-    CRC_SIZE,
-    HEADER_SIZE,
-    SIGNATURE_SIZE,
-    SIGNED,
-    START,
-    Frame,
-    Refusal,
-    decode,
-)
+from laglab_protocol.framing.frame import START, Frame, Refusal, decode, extent
 
 STAMP_SIZE = 8
 PIECE = 1 << 20
@@ -56,13 +47,7 @@ def _records(file: BinaryIO, name: str) -> Iterator[tuple[int, Frame]]:
             yield int.from_bytes(buffer[position : position + STAMP_SIZE], "big"), found
             position += STAMP_SIZE + len(found.raw)
         elif found is Refusal.UNKNOWN and buffer[position + STAMP_SIZE] == START:
-            position += STAMP_SIZE + _size(buffer, position + STAMP_SIZE)
+            position = extent(buffer, position + STAMP_SIZE)
         else:
             at = before + position + STAMP_SIZE
             raise TlogError(f"{name}: no frame of the dialect at byte {at}")
-
-
-def _size(buffer: bytes, start: int) -> int:
-    """Of a frame whose message is unknown, as its header tells."""
-    signature = SIGNATURE_SIZE if buffer[start + 2] & SIGNED else 0
-    return HEADER_SIZE + buffer[start + 1] + CRC_SIZE + signature

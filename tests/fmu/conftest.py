@@ -14,8 +14,7 @@ from fmpy.fmi3 import FMU3Model, FMU3Slave
 from laglab_fmu import build_fmus
 from laglab_fmu import slave as slave_module
 from laglab_fmu.compiler import host_platform
-from laglab_fmu.description import token
-from laglab_fmu.variables import MODEL_NAME, REFERENCE, VARIABLES, Kind
+from laglab_fmu.models import ROBOT, Kind, token
 
 
 class Face:
@@ -31,7 +30,7 @@ class Face:
         }
         if self.version == 2:
             platform = host_platform()
-            inside = f"binaries/{platform.fmi2_folder}/{MODEL_NAME}{platform.suffix}"
+            inside = f"binaries/{platform.fmi2_folder}/{ROBOT.name}{platform.suffix}"
             arguments["libraryPath"] = str(folder / inside)
         self.fmu: Any = _CLASSES[self.version, kind](**arguments)
         if self.version == 2:
@@ -49,14 +48,14 @@ class Face:
     def set(self, **values: float) -> None:
         """Sets variables by name."""
         for name, value in values.items():
-            kind = next(v.kind for v in VARIABLES if v.name == name)
+            kind = next(v.kind for v in ROBOT.variables if v.name == name)
             setter = getattr(self.fmu, "set" + _TYPE_NAMES[kind][self.version - 2])
-            setter([REFERENCE[name]], [value])
+            setter([ROBOT.reference[name]], [value])
 
     def get(self, *names: str) -> list[float]:
         """Real values by name."""
         getter = self.fmu.getReal if self.version == 2 else self.fmu.getFloat64
-        return list(getter([REFERENCE[name] for name in names]))
+        return list(getter([ROBOT.reference[name] for name in names]))
 
     def start(self, time: float = 0.0, stop: float | None = None, **values: float) -> None:
         """Sets parameters and leaves initialization mode."""

@@ -15,16 +15,16 @@ static const uint32_t WHEELS[2] = {VR_OMEGA_LEFT, VR_OMEGA_RIGHT};
 static const uint32_t POSE[3] = {VR_X, VR_Y, VR_THETA};
 static const double SPEEDS[2] = {4.0, 9.0};
 
-#define LOAD(NAME)                                                                         \
-    NAME##TYPE *NAME = NULL;                                                               \
-    void *found_##NAME = dlsym(library, #NAME);                                            \
-    if (!found_##NAME) return 1;                                                           \
+#define LOAD(NAME)                                                                                                     \
+    NAME##TYPE *NAME = NULL;                                                                                           \
+    void *found_##NAME = dlsym(library, #NAME);                                                                        \
+    if (!found_##NAME) return 1;                                                                                       \
     memcpy(&NAME, &found_##NAME, sizeof found_##NAME)
 
-#define DO(CALL)                                         \
-    if (CALL) {                                          \
-        fprintf(stderr, "%s failed\n", #CALL);           \
-        return 1;                                        \
+#define DO(CALL)                                                                                                       \
+    if (CALL) {                                                                                                        \
+        fprintf(stderr, "%s failed\n", #CALL);                                                                         \
+        return 1;                                                                                                      \
     }
 
 static void print(const double pose[3]) {

@@ -9,7 +9,7 @@ from libcosimpy.CosimObserver import CosimObserver
 from libcosimpy.CosimSlave import CosimLocalSlave
 
 from laglab_fmu import Reading
-from laglab_fmu.variables import REFERENCE
+from laglab_fmu.models import ROBOT
 
 SAMPLE_TIME = 10_000_000  # ns
 
@@ -19,15 +19,15 @@ def main(fmu: str, ticks: int) -> None:
     execution = CosimExecution.from_step_size(SAMPLE_TIME)
     slave = CosimLocalSlave(fmu_path=fmu, instance_name="robot")
     robot = execution.add_local_slave(slave)
-    execution.real_initial_value(robot, REFERENCE["theta_start"], 0.4)
-    execution.integer_initial_value(robot, REFERENCE["seed"], 6)
+    execution.real_initial_value(robot, ROBOT.reference["theta_start"], 0.4)
+    execution.integer_initial_value(robot, ROBOT.reference["seed"], 6)
     observer, manipulator = CosimObserver.create_last_value(), CosimManipulator.create_override()
     execution.add_observer(observer)
     execution.add_manipulator(manipulator)
-    wheels = [REFERENCE["omega_left"], REFERENCE["omega_right"]]
+    wheels = [ROBOT.reference["omega_left"], ROBOT.reference["omega_right"]]
     manipulator.slave_real_values(robot, wheels, [4.0, 9.0])
     execution.step(ticks)
-    outputs = observer.last_real_values(robot, [REFERENCE[name] for name in Reading._fields])
+    outputs = observer.last_real_values(robot, [ROBOT.reference[name] for name in Reading._fields])
     print("outputs", *(value.hex() for value in outputs), flush=True)
 
 

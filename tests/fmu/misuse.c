@@ -44,7 +44,8 @@ static fmi3Instance in_step;
 static unsigned long updates;
 
 /* Reads what may be read there, tries what may not, and leaves one step in four. */
-static void update3(void *environment, double time, bool set, bool get, bool finished, bool can_return, bool *early, double *at) {
+static void update3(void *environment, double time, bool set, bool get, bool finished, bool can_return, bool *early,
+                    double *at) {
     const uint32_t x = VR_X;
     double value;
     size_t size;
@@ -52,7 +53,8 @@ static void update3(void *environment, double time, bool set, bool get, bool fin
     (void)environment;
     updates += fmi3GetFloat64(in_step, &x, 1, &value, 1) == fmi3OK && get && finished && !set && isfinite(time);
     if (fmi3Reset(in_step) == fmi3OK || fmi3Terminate(in_step) == fmi3OK) abort();
-    if (fmi3GetFMUState(in_step, &none) == fmi3OK || fmi3SerializedFMUStateSize(in_step, none, &size) == fmi3OK) abort();
+    if (fmi3GetFMUState(in_step, &none) == fmi3OK || fmi3SerializedFMUStateSize(in_step, none, &size) == fmi3OK)
+        abort();
     *early = can_return && !draw(4);
     *at = number();
 }
@@ -108,8 +110,12 @@ static void call2(fmi2Component c, fmi2FMUstate *state) {
         case 0: fmi2SetupExperiment(c, 0, 0, draw(9) ? 0.0 : number(), !draw(9), number()); break;
         case 1: fmi2EnterInitializationMode(c); break;
         case 2: fmi2ExitInitializationMode(c); break;
-        case 3: if (!draw(20)) fmi2Terminate(c); break;
-        case 4: if (!draw(20)) fmi2Reset(c); break;
+        case 3:
+            if (!draw(20)) fmi2Terminate(c);
+            break;
+        case 4:
+            if (!draw(20)) fmi2Reset(c);
+            break;
         case 5: fmi2GetReal(c, vr, n, out); break;
         case 6: fmi2SetReal(c, vr, n, in); break;
         case 7: fmi2GetInteger(c, vr, n, integers); break;
@@ -125,7 +131,9 @@ static void call2(fmi2Component c, fmi2FMUstate *state) {
         case 14: fmi2FreeFMUstate(c, state); break;
         case 15: fmi2SerializedFMUstateSize(c, *state, draw(20) ? &size : NULL); break;
         case 16:
-            if (fmi2SerializedFMUstateSize(c, *state, &size) || fmi2SerializeFMUstate(c, *state, (fmi2Byte *)bytes, size - !draw(9))) break;
+            if (fmi2SerializedFMUstateSize(c, *state, &size) ||
+                fmi2SerializeFMUstate(c, *state, (fmi2Byte *)bytes, size - !draw(9)))
+                break;
             bytes_used = size;
             break;
         case 17: damage(); break;
@@ -140,7 +148,9 @@ static void call2(fmi2Component c, fmi2FMUstate *state) {
         case 26: fmi2GetDerivatives(c, out, 3 - !draw(9)); break;
         case 27: fmi2GetNominalsOfContinuousStates(c, out, 3 - !draw(9)); break;
         case 28: fmi2CompletedIntegratorStep(c, 1, &enter, draw(20) ? &end : NULL); break;
-        case 29: fmi2SetDebugLogging(c, (int)draw(2), draw(2), (const fmi2String[]){draw(2) ? "logEvents" : "nonsense"}); break;
+        case 29:
+            fmi2SetDebugLogging(c, (int)draw(2), draw(2), (const fmi2String[]){draw(2) ? "logEvents" : "nonsense"});
+            break;
         default: fmi2GetRealStatus(draw(20) ? c : NULL, (fmi2StatusKind)draw(4), out);
     }
 }
@@ -156,8 +166,12 @@ static void call3(fmi3Instance c, fmi3FMUState *state) {
         case 1: fmi3ExitConfigurationMode(c); break;
         case 2: fmi3EnterInitializationMode(c, 0, 0, draw(9) ? 0.0 : number(), !draw(9), number()); break;
         case 3: fmi3ExitInitializationMode(c); break;
-        case 4: if (!draw(20)) fmi3Terminate(c); break;
-        case 5: if (!draw(20)) fmi3Reset(c); break;
+        case 4:
+            if (!draw(20)) fmi3Terminate(c);
+            break;
+        case 5:
+            if (!draw(20)) fmi3Reset(c);
+            break;
         case 6: fmi3GetFloat64(c, vr, n, out, m); break;
         case 7: fmi3SetFloat64(c, vr, n, in, m); break;
         case 8: fmi3GetInt32(c, vr, n, integers, m); break;
@@ -182,7 +196,9 @@ static void call3(fmi3Instance c, fmi3FMUState *state) {
         case 19: fmi3FreeFMUState(c, state); break;
         case 20: fmi3SerializedFMUStateSize(c, *state, &size); break;
         case 21:
-            if (fmi3SerializedFMUStateSize(c, *state, &size) || fmi3SerializeFMUState(c, *state, bytes, size - !draw(9))) break;
+            if (fmi3SerializedFMUStateSize(c, *state, &size) ||
+                fmi3SerializeFMUState(c, *state, bytes, size - !draw(9)))
+                break;
             bytes_used = size;
             break;
         case 22: damage(); break;
@@ -227,10 +243,11 @@ int main(int count, char **arguments) {
     const fmi2CallbackFunctions functions = {.logger = note2};
     fmi2Component c2[2] = {fmi2Instantiate("a", fmi2CoSimulation, TOKEN_2, NULL, &functions, 0, 0),
                            fmi2Instantiate("b", fmi2ModelExchange, TOKEN_2, NULL, &functions, 0, 1)};
-    fmi3Instance c3[4] = {fmi3InstantiateCoSimulation("c", TOKEN_3, NULL, 0, 0, 0, 0, NULL, 0, NULL, note3, NULL),
-                          fmi3InstantiateModelExchange("d", TOKEN_FLEET, NULL, 0, 1, NULL, note3),
-                          fmi3InstantiateCoSimulation("h", TOKEN_FLEET, NULL, 0, 0, 0, 1, NULL, 0, NULL, note3, update3),
-                          fmi3InstantiateCoSimulation("i", TOKEN_3, NULL, 0, 0, 1, 0, NULL, 0, NULL, note3, update3)};
+    fmi3Instance c3[4] = {
+        fmi3InstantiateCoSimulation("c", TOKEN_3, NULL, 0, 0, 0, 0, NULL, 0, NULL, note3, NULL),
+        fmi3InstantiateModelExchange("d", TOKEN_FLEET, NULL, 0, 1, NULL, note3),
+        fmi3InstantiateCoSimulation("h", TOKEN_FLEET, NULL, 0, 0, 0, 1, NULL, 0, NULL, note3, update3),
+        fmi3InstantiateCoSimulation("i", TOKEN_3, NULL, 0, 0, 1, 0, NULL, 0, NULL, note3, update3)};
     fmi2FMUstate state2 = NULL;
     fmi3FMUState state3 = NULL;
     if (fmi2Instantiate("e", fmi2CoSimulation, "wrong", NULL, NULL, 0, 0)) return 1;

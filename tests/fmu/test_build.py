@@ -13,9 +13,9 @@ from laglab_fmu import (
     RobotParameters,
     build_fmus,
     c_compiler,
-    contents,
 )
 from laglab_fmu import compiler as compiler_module
+from laglab_fmu.archive import contents
 
 
 def test_twice_the_same_bytes(fmus: dict[str, Path], tmp_path: Path) -> None:

@@ -13,9 +13,8 @@ from fmpy.util import read_csv
 from fmpy.validation import validate_fmu
 from lxml import etree
 
-from laglab_fmu.contents import REFERENCE_LAYER, own_files
-from laglab_fmu.models import ROBOT
-from laglab_fmu.variables import VARIABLES, Role
+from laglab_fmu.archive.contents import REFERENCE_LAYER, own_files
+from laglab_fmu.models import ROBOT, Role
 
 ROOT = Path(__file__).parents[2]
 SCHEMAS = Path(str(files("fmpy"))) / "schema" / "fmi3"
@@ -61,7 +60,7 @@ def test_the_size_of_a_fleet_comes_before_what_it_sizes(extracted: dict[str, Pat
     for variable in model:
         read.add(variable.get("valueReference"))
         assert {dimension.get("valueReference") for dimension in variable} <= read
-    assert len(read) == len(VARIABLES)
+    assert len(read) == len(ROBOT.variables)
 
 
 def test_every_fmu_has_a_token_of_its_own(fmus: dict[str, Path]) -> None:
@@ -93,7 +92,7 @@ def test_terminals_hold_every_input_and_output(extracted: dict[str, Path]) -> No
     root = etree.parse(extracted["Robot3"] / "terminalsAndIcons" / "terminalsAndIcons.xml")
     members = [m.get("variableName") for m in root.iter("TerminalMemberVariable")]
     connected = (Role.INPUT, Role.STATE, Role.SAMPLED, Role.ALGEBRAIC)
-    assert members == [variable.name for variable in VARIABLES if variable.role in connected]
+    assert members == [variable.name for variable in ROBOT.variables if variable.role in connected]
 
 
 @pytest.mark.parametrize(
@@ -108,7 +107,7 @@ def test_there_is_an_icon(extracted: dict[str, Path], name: str, icon: str) -> N
 @pytest.mark.parametrize("name", ROBOT.fmus)
 def test_the_page_explains_every_variable(extracted: dict[str, Path], name: str) -> None:
     page = (extracted[name] / "documentation" / "index.html").read_text(encoding="utf-8")
-    for variable in VARIABLES:
+    for variable in ROBOT.variables:
         assert variable.name == "time" or f"<td>{variable.name}</td>" in page
     etree.HTML(page)
 

@@ -12,7 +12,7 @@ from fmpy.fmi1 import FMICallException
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from laglab_fmu.variables import REFERENCE, VARIABLES, Kind
+from laglab_fmu.models import ROBOT, Kind
 
 Ts, r, L = 0.01, 0.05, 0.6
 STATES, WHEELS = ("x", "y", "theta"), ("omega_left", "omega_right")
@@ -21,7 +21,7 @@ FACES = [(n, k) for n in ("Robot2", "Robot3") for k in ("CoSimulation", "ModelEx
 
 
 def references(names: tuple[str, ...]) -> list[int]:
-    return [REFERENCE[name] for name in names]
+    return [ROBOT.reference[name] for name in names]
 
 
 def jacobian(face: Any, unknowns: tuple[str, ...], knowns: tuple[str, ...]) -> np.ndarray:
@@ -114,7 +114,9 @@ def test_at_the_start_they_agree_with_differences_by_every_known(
         face.fmu.setupExperiment()
     face.fmu.enterInitializationMode()
     knowns = [v.name for v in model.modelVariables if v.causality in ("input", "parameter")]
-    reals = [known for known in knowns if VARIABLES[REFERENCE[known]].kind is Kind.FLOAT64]
+    reals = [
+        known for known in knowns if ROBOT.variables[ROBOT.reference[known]].kind is Kind.FLOAT64
+    ]
     unknowns = tuple(unknown.variable.name for unknown in model.initialUnknowns)
     J = jacobian(face, unknowns, tuple(reals))
     for column, known in enumerate(reals):
@@ -126,6 +128,10 @@ def test_at_the_start_they_agree_with_differences_by_every_known(
         difference = (above - np.array(face.get(*unknowns))) / (2 * step)
         face.set(**{known: value})
         np.testing.assert_allclose(J[:, column], difference, rtol=1e-6, atol=1e-8, err_msg=known)
+        back = face.fmu.getDirectionalDerivative(
+            references(unknowns), [ROBOT.reference[known]], [-1.0]
+        )
+        np.testing.assert_array_equal(back, -J[:, column], err_msg=known)
     for row, unknown in enumerate(model.initialUnknowns):
         depends = {known.name for known in unknown.dependencies}
         assert {known for known, entry in zip(reals, J[row], strict=True) if entry} <= depends

@@ -9,7 +9,7 @@ import pytest
 from fmpy.fmi1 import FMICallException
 
 from laglab_fmu import CallError, Fleet, Robot, RobotParameters
-from laglab_fmu.variables import REFERENCE
+from laglab_fmu.models import ROBOT
 
 ROBOTS = [
     RobotParameters(seed=3 * i, start=(0.1 * i, -1.0, i), wheel_slip=0.01 * i) for i in range(7)
@@ -78,10 +78,10 @@ def test_the_size_is_set_in_configuration_mode_only(make_face: Callable[..., Any
     assert "robots = 0 refused" in face.messages[-1][2]
     face.set(robots=3)
     face.fmu.exitConfigurationMode()
-    assert face.fmu.getUInt64([REFERENCE["robots"]]) == [3]
-    assert face.fmu.getInt32([REFERENCE["seed"]], 3) == [1, 2, 3]
+    assert face.fmu.getUInt64([ROBOT.reference["robots"]]) == [3]
+    assert face.fmu.getInt32([ROBOT.reference["seed"]], 3) == [1, 2, 3]
     with pytest.raises(FMICallException):
-        face.fmu.getFloat64([REFERENCE["x"]], 2)
+        face.fmu.getFloat64([ROBOT.reference["x"]], 2)
     assert "2 values given for variables that hold 3" in face.messages[-1][2]
 
 
@@ -91,8 +91,8 @@ def test_reset_gives_the_size_its_default_back(make_face: Callable[..., Any]) ->
     face.set(robots=3)
     face.fmu.exitConfigurationMode()
     face.fmu.reset()
-    assert face.fmu.getUInt64([REFERENCE["robots"]]) == [1]
-    assert face.fmu.getInt32([REFERENCE["seed"]]) == [1]
+    assert face.fmu.getUInt64([ROBOT.reference["robots"]]) == [1]
+    assert face.fmu.getInt32([ROBOT.reference["seed"]]) == [1]
     face.start()
     face.step(0.0)
 
@@ -104,7 +104,7 @@ def test_in_model_exchange_robot_i_equals_a_single_robot(make_face: Callable[...
     fleet.fmu.enterConfigurationMode()
     fleet.set(robots=3)
     fleet.fmu.exitConfigurationMode()
-    fleet.fmu.setFloat64([REFERENCE["sample_time"]], sample_times)
+    fleet.fmu.setFloat64([ROBOT.reference["sample_time"]], sample_times)
     together = integrate(fleet, 3, outputs)
     for i, sample_time in enumerate(sample_times):
         robot = make_face("Robot3", "ModelExchange")
@@ -117,7 +117,7 @@ def integrate(face: Any, robots: int, outputs: tuple[str, ...]) -> np.ndarray:
     fmu, readings = face.fmu, []
     states, slopes = np.zeros(3 * robots), np.zeros(3 * robots)
     face.start()
-    fmu.setFloat64([REFERENCE["omega_right"]], [4.0] * robots)
+    fmu.setFloat64([ROBOT.reference["omega_right"]], [4.0] * robots)
     *_, next_event = fmu.updateDiscreteStates()
     fmu.enterContinuousTimeMode()
     for step in range(1, 21):
@@ -130,7 +130,7 @@ def integrate(face: Any, robots: int, outputs: tuple[str, ...]) -> np.ndarray:
             fmu.enterEventMode()
             *_, next_event = fmu.updateDiscreteStates()
             fmu.enterContinuousTimeMode()
-        references = [REFERENCE[name] for name in outputs]
+        references = [ROBOT.reference[name] for name in outputs]
         readings.append(fmu.getFloat64(references, len(outputs) * robots))
     return np.array(readings).reshape(20, len(outputs), robots)
 
@@ -144,23 +144,25 @@ def test_derivatives_and_states_of_a_fleet(make_face: Callable[..., Any]) -> Non
     face.fmu.enterConfigurationMode()
     face.set(robots=2)
     face.fmu.exitConfigurationMode()
-    face.fmu.setFloat64([REFERENCE["theta_start"]], [0.0, np.pi / 2])
-    face.fmu.setBoolean([REFERENCE["noise"]], [False, False])
+    face.fmu.setFloat64([ROBOT.reference["theta_start"]], [0.0, np.pi / 2])
+    face.fmu.setBoolean([ROBOT.reference["noise"]], [False, False])
     face.fmu.enterInitializationMode()
     face.fmu.exitInitializationMode()
-    face.fmu.setFloat64([REFERENCE["omega_left"], REFERENCE["omega_right"]], [2.0, 4.0, 2.0, 4.0])
-    unknowns = [REFERENCE["der(x)"], REFERENCE["der(y)"]]
+    face.fmu.setFloat64(
+        [ROBOT.reference["omega_left"], ROBOT.reference["omega_right"]], [2.0, 4.0, 2.0, 4.0]
+    )
+    unknowns = [ROBOT.reference["der(x)"], ROBOT.reference["der(y)"]]
     v = [0.1, 0.2]
-    given = face.fmu.getDirectionalDerivative(unknowns, [REFERENCE["theta"]], [1.0, 1.0], 4)
+    given = face.fmu.getDirectionalDerivative(unknowns, [ROBOT.reference["theta"]], [1.0, 1.0], 4)
     np.testing.assert_allclose(given, [0.0, -v[1], v[0], 0.0], atol=1e-16)
     state = face.save()
     data = face.serialize(state)
     face.step(0.0)
-    moved = face.fmu.getFloat64([REFERENCE["x"], REFERENCE["y"]], 4)
+    moved = face.fmu.getFloat64([ROBOT.reference["x"], ROBOT.reference["y"]], 4)
     face.restore(state)
     face.free(state)
     face.step(0.0)
-    assert face.fmu.getFloat64([REFERENCE["x"], REFERENCE["y"]], 4) == moved
+    assert face.fmu.getFloat64([ROBOT.reference["x"], ROBOT.reference["y"]], 4) == moved
     alone = make_face("Fleet3", "CoSimulation")
     received = alone.deserialize(data)
     with pytest.raises(FMICallException):

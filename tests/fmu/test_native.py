@@ -11,11 +11,9 @@ from fmpy import simulate_fmu
 from fmpy.util import create_cmake_project
 
 from laglab_fmu import BuildError, Robot, RobotParameters, c_compiler
+from laglab_fmu.archive.contents import c_files, fmi_headers
 from laglab_fmu.compiler import FLAGS, compile_library, host_compiler, host_platform
-from laglab_fmu.contents import c_files, fmi_headers
-from laglab_fmu.description import token
-from laglab_fmu.models import ROBOT
-from laglab_fmu.variables import MODEL_NAME
+from laglab_fmu.models import ROBOT, token
 
 HERE = Path(__file__).parent
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"]
@@ -84,7 +82,7 @@ def test_a_c_host_without_libm_gets_the_same_bits(
 ) -> None:
     platform = host_platform()
     folder = platform.fmi2_folder if name == "Robot2" else platform.fmi3_folder
-    library = extracted[name] / "binaries" / folder / f"{MODEL_NAME}{platform.suffix}"
+    library = extracted[name] / "binaries" / folder / f"{ROBOT.name}{platform.suffix}"
     compile_program(sources, tmp_path / "host", "host.c", "-ldl")
     done = subprocess.run(
         [str(tmp_path / "host"), str(library), str(TICKS)],
@@ -117,7 +115,7 @@ def test_a_third_party_compiles_what_is_inside(
         listed = [file.get("name") for file in build.findall(".//SourceFile")]
         assert [library.get("name") for library in build.findall(".//Library")] == ["m"]
     assert sorted(path.name for path in folder.glob("*.c")) == listed
-    library = tmp_path / f"{MODEL_NAME}{host_platform().suffix}"
+    library = tmp_path / f"{ROBOT.name}{host_platform().suffix}"
     command = [*c_compiler(), "-std=c99", "-shared", "-fPIC", "-o", str(library)]
     subprocess.run([*command, *map(str, listed), "-lm"], check=True, cwd=folder)
     assert token(name).encode() in library.read_bytes()

@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from laglab_fmu import Reading, Robot, RobotParameters, c_compiler
+from laglab_fmu.archive.contents import own_files
 from laglab_fmu.compiler import FLAGS, host_platform
-from laglab_fmu.contents import own_files
 
 WORD = st.integers(0, 2**64 - 1)
 SAMPLES = 20_000

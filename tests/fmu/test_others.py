@@ -12,8 +12,7 @@ from fmpy.fmi3 import FMU3Slave
 from fmpy.validation import validate_fmu
 
 from laglab_fmu.foreign import FmuFile, ForeignRobot, Value, Wiring
-from laglab_fmu.models import MODELS, model_of
-from laglab_fmu.variables import Kind, Role
+from laglab_fmu.models import MODELS, Kind, Role, model_of
 
 TS = 0.01
 OTHERS = ("Car2", "Car3", "Omni2", "Omni3")
@@ -140,5 +139,7 @@ def test_partial_derivatives_agree_with_differences(
             at()
             told_so = made.getDirectionalDerivative(unknowns, [reference[known]], [1.0])
             np.testing.assert_allclose(told_so, found, rtol=1e-4, atol=1e-6, err_msg=known)
+            back = made.getDirectionalDerivative(unknowns, [reference[known]], [-1.0])
+            np.testing.assert_array_equal(back, np.negative(told_so), err_msg=known)
     finally:
         made.freeInstance()

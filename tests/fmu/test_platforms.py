@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from laglab_fmu import BuildError, build_fmus
+from laglab_fmu.archive.contents import c_files, fmi_headers
+from laglab_fmu.archive.mach_o import commands, signed
 from laglab_fmu.compiler import FLAGS, PLATFORMS, Platform, host_platform, zig_compiler
-from laglab_fmu.contents import c_files, fmi_headers
-from laglab_fmu.mach_o import commands, signed
 
 BY_FOLDER = {platform.fmi3_folder: platform for platform in PLATFORMS}
 WINDOWS = [platform for platform in PLATFORMS if platform.system == "windows"]

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from fmpy.fmi1 import FMICallException
 
-from laglab_fmu.variables import REFERENCE, VARIABLES, Kind, Role
+from laglab_fmu.models import ROBOT, Kind, Role
 
 DISCARD, ERROR = 2, 3
 NAMES = ["Robot2", "Robot3"]
@@ -30,7 +30,7 @@ def test_every_real_must_be_finite(
     make_face: Callable[..., Any], name: str, kind: str, value: float
 ) -> None:
     face = make_face(name, kind)
-    for variable in VARIABLES:
+    for variable in ROBOT.variables:
         if variable.kind is Kind.FLOAT64 and variable.role in SETTABLE:
             with face.refused(DISCARD, f"{variable.name} = ", "refused"):
                 face.set(**{variable.name: value})
@@ -43,7 +43,7 @@ def test_every_real_must_be_finite(
 @pytest.mark.parametrize("name", NAMES)
 def test_bounds_are_those_of_the_description(make_face: Callable[..., Any], name: str) -> None:
     face = make_face(name, "CoSimulation")
-    for variable in VARIABLES:
+    for variable in ROBOT.variables:
         if variable.role not in SETTABLE or variable.kind is Kind.BOOLEAN:
             continue
         for bound, direction in ((variable.minimum, -1), (variable.maximum, 1)):
@@ -73,7 +73,7 @@ def test_a_refused_value_changes_nothing(
     before = face.get(parameter, "wheel_radius")
     setter = face.fmu.setReal if face.version == 2 else face.fmu.setFloat64
     with face.refused(DISCARD, parameter):
-        setter([REFERENCE["wheel_radius"], REFERENCE[parameter]], [0.08, -1.0])
+        setter([ROBOT.reference["wheel_radius"], ROBOT.reference[parameter]], [0.08, -1.0])
     assert face.get(parameter, "wheel_radius") == before
 
 
@@ -163,20 +163,20 @@ def test_wrong_value_references(make_face: Callable[..., Any], name: str) -> Non
     real = "Real" if name == "Robot2" else "Float64"
     integer = "Integer" if name == "Robot2" else "Int32"
     for reference, word in (
-        (len(VARIABLES), "unknown"),
+        (len(ROBOT.variables), "unknown"),
         (2**32 - 1, "unknown"),
-        (REFERENCE["seed"], "seed"),
+        (ROBOT.reference["seed"], "seed"),
     ):
         with face.refused(ERROR, str(reference), word):
-            getattr(face.fmu, "get" + real)([REFERENCE["x"], reference])
+            getattr(face.fmu, "get" + real)([ROBOT.reference["x"], reference])
         with face.refused(ERROR, str(reference), word):
             getattr(face.fmu, "set" + real)([reference], [1.0])
     with face.refused(ERROR, "(track)"):
-        getattr(face.fmu, "get" + integer)([REFERENCE["track"]])
+        getattr(face.fmu, "get" + integer)([ROBOT.reference["track"]])
     with face.refused(ERROR, "(track)"):
-        face.fmu.setBoolean([REFERENCE["track"]], [True])
+        face.fmu.setBoolean([ROBOT.reference["track"]], [True])
     with face.refused(ERROR, "x cannot be set"):
-        getattr(face.fmu, "set" + real)([REFERENCE["x"]], [1.0])
+        getattr(face.fmu, "set" + real)([ROBOT.reference["x"]], [1.0])
     face.start()
     still_works(face)
 

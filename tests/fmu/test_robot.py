@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from laglab_fmu import CallError, FmuNotBuiltError, Reading, Robot, RobotParameters, fmu_path
 from laglab_fmu import slave as slave_module
+from laglab_fmu.models import ROBOT
 from laglab_fmu.slave import Slave3, initialize
-from laglab_fmu.variables import REFERENCE
 
 QUIET = RobotParameters(noise=False, start=(-3.0, -2.0, 0.5))
 SPEED = st.floats(-50, 50)
@@ -73,7 +73,7 @@ def run_with_steps(steps: list[float], parameters: RobotParameters) -> Reading:
         slave = robot._slave
         assert isinstance(slave, Slave3)
         fmu: FMU3Slave = slave.fmu
-        fmu.setFloat64([REFERENCE["omega_left"], REFERENCE["omega_right"]], [3.0, 5.0])
+        fmu.setFloat64([ROBOT.reference["omega_left"], ROBOT.reference["omega_right"]], [3.0, 5.0])
         time = 0.0
         for step in steps:
             fmu.doStep(time, step)

@@ -97,7 +97,7 @@ def test_damaged_states_are_refused_or_harmless(
     make_face: Callable[..., Any], data: st.DataObject
 ) -> None:
     """Bytes changed, cut or added; with the checksum left wrong, or made to fit again."""
-    from laglab_fmu.description import token
+    from laglab_fmu.models import token
 
     face = make_face("Robot3", "CoSimulation")
     face.start(seed=2)
@@ -128,9 +128,9 @@ def test_damaged_states_are_refused_or_harmless(
 @pytest.mark.parametrize(
     ("offset", "value", "what"),
     [
-        (HEAD + 2 * 8, struct.pack("<d", 0.0), "sample_time"),
+        (HEAD + 15 * 8, struct.pack("<d", 0.0), "sample_time"),
         (HEAD + 1 * 8, struct.pack("<d", float("nan")), "track"),
-        (HEAD + 3 * 8, struct.pack("<d", -1.0), "wheel_noise_variance"),
+        (HEAD + 7 * 8, struct.pack("<d", -1.0), "wheel_noise_variance"),
         (HEAD + 32 * 8, struct.pack("<d", -1.0), "elapsed"),
         (HEAD + 32 * 8, struct.pack("<d", 1e300), "elapsed"),
         (HEAD + 33 * 8, struct.pack("<q", -1), "sample"),
@@ -142,7 +142,7 @@ def test_damaged_states_are_refused_or_harmless(
 def test_impossible_values_are_named(
     make_face: Callable[..., Any], offset: int, value: bytes, what: str
 ) -> None:
-    from laglab_fmu.description import token
+    from laglab_fmu.models import token
 
     face = make_face("Robot2", "CoSimulation")
     face.start()

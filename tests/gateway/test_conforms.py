@@ -35,12 +35,6 @@ from laglab_protocol import (
 PARAMETERS = RobotParameters(start=(-3.0, -2.0, 0.0), noise=True)
 
 
-@pytest.fixture
-def stack() -> Iterator[ExitStack]:
-    with ExitStack() as opened:
-        yield opened
-
-
 def serve(endpoint: Endpoint, key_file: Path | None, pace: Pace, ticks: int = 10**6) -> None:
     config = GatewayConfig(3, 5, ticks, PARAMETERS.sample_time)
     with (

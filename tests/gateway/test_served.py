@@ -137,12 +137,6 @@ def test_the_pose_is_reset(robot: Robot) -> None:
     assert (gateway.state.x, gateway.state.y, gateway.state.theta) == (5.0, -2.0, 0.5)
 
 
-@pytest.fixture
-def stack() -> Iterator[ExitStack]:
-    with ExitStack() as opened:
-        yield opened
-
-
 def watcher(endpoint: Endpoint) -> Watcher:
     sender, receiver = Codec(ROBOT_SYSTEM, ROBOT_COMPONENT).on_another_link()
     return Watcher(Listener(endpoint, receiver), sender)

@@ -2,7 +2,7 @@
 
 import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -36,12 +36,6 @@ from laglab_protocol.dialect.generated import laglab as mavlink
 
 STATE = RobotState(0, 3.0, 4.0, 0.0, 0.0, 0.0)
 GCS = Heartbeat(0, 6, 8, 0, 4, 3)
-
-
-@pytest.fixture
-def stack() -> Iterator[ExitStack]:
-    with ExitStack() as opened:
-        yield opened
 
 
 class Watched:

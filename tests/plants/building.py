@@ -9,8 +9,8 @@ from types import MappingProxyType
 from xml.sax.saxutils import quoteattr
 
 from laglab_fmu import c_compiler
+from laglab_fmu.archive.contents import fmi_headers
 from laglab_fmu.compiler import compile_library, host_platform
-from laglab_fmu.contents import fmi_headers
 
 SOURCES = Path(__file__).parent / "fmus"
 ROVER = (

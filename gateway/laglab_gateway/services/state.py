@@ -1,6 +1,5 @@
 """What the services know of the robot, and whether it may move."""
 
-import math
 from typing import NamedTuple
 
 
@@ -53,7 +52,7 @@ class Arming:
 
     def reset(self, pose: Pose) -> bool:
         """Ask for the robot to be put at `pose`; False while it may move."""
-        if self.armed or not self._placeable or any(math.isinf(each) for each in pose):
+        if self.armed or not self._placeable:
             return False
         self.stopped = False
         self.reset_to = pose

@@ -3,7 +3,7 @@
 import math
 
 from laglab_gateway.services.frames import to_ned
-from laglab_gateway.services.modes import MODE
+from laglab_gateway.services.modes import ARMED, CUSTOM_MODE, MODE
 from laglab_gateway.services.state import Arming, RobotState
 from laglab_protocol import (
     Attitude,
@@ -31,18 +31,15 @@ NO_VOLTAGE, NO_CURRENT, NO_BATTERY = 0xFFFF, -1, -1
 
 def heartbeat(arming: Arming) -> Heartbeat:
     """A ground rover, and whether it may move."""
-    base_mode = MODE
-    if arming.armed:
-        base_mode |= mavlink.MAV_MODE_FLAG_SAFETY_ARMED
     if arming.stopped:
         status = mavlink.MAV_STATE_EMERGENCY
     else:
         status = mavlink.MAV_STATE_ACTIVE if arming.armed else mavlink.MAV_STATE_STANDBY
     return Heartbeat(
-        custom_mode=0,
+        custom_mode=CUSTOM_MODE,
         type=mavlink.MAV_TYPE_GROUND_ROVER,
         autopilot=mavlink.MAV_AUTOPILOT_GENERIC,
-        base_mode=base_mode,
+        base_mode=MODE | ARMED if arming.armed else MODE,
         system_status=status,
         mavlink_version=MAVLINK_VERSION,
     )

@@ -1,7 +1,6 @@
 """The narrow thing that every endpoint is."""
 
 from collections.abc import Hashable
-from types import TracebackType
 from typing import Protocol, Self
 
 Address = Hashable
@@ -76,9 +75,4 @@ class Endpoint(Link, Protocol):
 
     def __enter__(self) -> Self: ...
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None: ...
+    def __exit__(self, *_: object) -> None: ...

@@ -8,7 +8,6 @@ import tty
 from abc import ABC, abstractmethod
 from pathlib import Path
 from time import monotonic
-from types import TracebackType
 from typing import Self
 
 import serial
@@ -122,12 +121,7 @@ class _Tty(ABC):
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
 

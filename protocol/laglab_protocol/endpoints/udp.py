@@ -5,7 +5,6 @@ import selectors
 import socket
 from abc import ABC, abstractmethod
 from time import monotonic
-from types import TracebackType
 from typing import Any, Self
 
 from laglab_protocol.endpoints.apart import queue_for
@@ -75,12 +74,7 @@ class _Udp(ABC):
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
 

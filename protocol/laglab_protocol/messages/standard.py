@@ -228,13 +228,6 @@ class AutopilotVersion(Message, frozen=True):
     uid2: tuple[int, ...] = (0,) * 18
 
 
-class MessageInterval(Message, frozen=True):
-    """How often a message is sent [us]; -1 never, 0 not at all known here."""
-
-    interval_us: int
-    message_id: int
-
-
 MAV_SEVERITY_EMERGENCY, MAV_SEVERITY_ERROR, MAV_SEVERITY_WARNING = 0, 3, 4
 
 
@@ -265,6 +258,5 @@ STANDARD: dict[str, type[Message]] = {
     "COMMAND_INT": CommandInt,
     "COMMAND_ACK": CommandAck,
     "AUTOPILOT_VERSION": AutopilotVersion,
-    "MESSAGE_INTERVAL": MessageInterval,
     "STATUSTEXT": Statustext,
 }

@@ -27,7 +27,8 @@ EXPORT void encode(int count, int with_key) {
     mavlink_message_t message;
     const uint8_t channel = with_key ? SIGNING_SENDER : SENDER;
     for (int i = 0; i < count; i++) {
-        mavlink_msg_laglab_measurement_pack_chan(1, 1, channel, &message, 1.5, -2.0, 3.125, 0.5, -1.7, 1234567, 1234537);
+        mavlink_msg_laglab_measurement_pack_chan(1, 1, channel, &message, 1.5, -2.0, 3.125, 0.5, -1.7, 1234567,
+                                                 1234537);
         sizes[with_key][i] = mavlink_msg_to_send_buffer(frames[with_key][i], &message);
     }
 }

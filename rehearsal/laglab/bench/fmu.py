@@ -12,13 +12,13 @@ import numpy as np
 from laglab.bench.c_library import c_library, new_folder
 from laglab.bench.harness import Bench, Contest, Progress, Turn, microseconds, timed
 from laglab.bench.result import Figure, Result
-from laglab_fmu.contents import c_files
+from laglab_fmu.archive.contents import c_files
 from laglab_fmu.fleet import Fleet
+from laglab_fmu.models import ROBOT
 from laglab_fmu.parameters import RobotParameters
 from laglab_fmu.robot import Robot
 from laglab_fmu.slave import VERSIONS, fmu_path
 from laglab_fmu.stepper import INPUTS, OUTPUTS
-from laglab_fmu.variables import REFERENCE
 
 SPEEDS = (4.0, 9.0)
 SAMPLE_TIME = RobotParameters.sample_time
@@ -86,8 +86,8 @@ def _slave_methods(version: int, ticks: int, stack: ExitStack) -> Turn:
     put, get = (
         (slave.setReal, slave.getReal) if version == 2 else (slave.setFloat64, slave.getFloat64)
     )
-    inputs = [REFERENCE[name] for name in INPUTS]
-    outputs = [REFERENCE[name] for name in OUTPUTS]
+    inputs = [ROBOT.reference[name] for name in INPUTS]
+    outputs = [ROBOT.reference[name] for name in OUTPUTS]
 
     clock = count()
 

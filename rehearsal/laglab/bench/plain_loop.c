@@ -29,8 +29,7 @@ EXPORT Robot *plain_start(size_t count) {
 }
 
 /* Steps each robot `ticks` times: sets its wheel speeds, moves it, reads it. */
-EXPORT void plain_loop(Robot *robots, size_t count, long ticks, const double speeds[][2],
-                       double readings[][READINGS]) {
+EXPORT void plain_loop(Robot *robots, size_t count, long ticks, const double speeds[][2], double readings[][READINGS]) {
     for (long tick = 0; tick < ticks; tick++) {
         for (size_t i = 0; i < count; i++) {
             Robot *robot = &robots[i];

@@ -8,8 +8,31 @@
 
 #include "fmi2Functions.h"
 
-enum { CMD_LEFT, CMD_RIGHT, POS_X, POS_Y, PSI, X0, Y0, PSI0, GPS_X, GPS_Y, COMPASS, FAIL_AT, NAN_AT, DISCARD_AT, RADIUS,
-       BASE, CRASH_AT, DICE, WALL_AT, DER_X, DER_Y, DER_PSI, VARIABLES };
+enum {
+    CMD_LEFT,
+    CMD_RIGHT,
+    POS_X,
+    POS_Y,
+    PSI,
+    X0,
+    Y0,
+    PSI0,
+    GPS_X,
+    GPS_Y,
+    COMPASS,
+    FAIL_AT,
+    NAN_AT,
+    DISCARD_AT,
+    RADIUS,
+    BASE,
+    CRASH_AT,
+    DICE,
+    WALL_AT,
+    DER_X,
+    DER_Y,
+    DER_PSI,
+    VARIABLES
+};
 
 static const double PART = 0.005; /* s: its own step */
 
@@ -121,7 +144,8 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n,
     Rover *rover = c;
     for (size_t i = 0; i < n; i++) {
         if (vr[i] == BASE && value[i] <= 0.0) {
-            rover->call.logger(rover->call.componentEnvironment, "rover", fmi2Error, "error", "a base of %g m?", value[i]);
+            rover->call.logger(rover->call.componentEnvironment, "rover", fmi2Error, "error", "a base of %g m?",
+                               value[i]);
             return fmi2Error;
         }
         rover->value[vr[i]] = value[i];
@@ -141,8 +165,8 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
         return fmi2Discard;
     }
     if (end > rover->value[FAIL_AT]) {
-        rover->call.logger(rover->call.componentEnvironment, "rover", fmi2Error, "error", "the %s motor is on fire at %g s",
-                           "left", time);
+        rover->call.logger(rover->call.componentEnvironment, "rover", fmi2Error, "error",
+                           "the %s motor is on fire at %g s", "left", time);
         return fmi2Error;
     }
     const int parts = (int)lround(step / PART);
@@ -224,17 +248,17 @@ const char *fmi2GetVersion(void) {
     return fmi2Version;
 }
 
-fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerates, fmi2Real tolerance, fmi2Real start, fmi2Boolean stops,
-                               fmi2Real stop) {
+fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerates, fmi2Real tolerance, fmi2Real start,
+                               fmi2Boolean stops, fmi2Real stop) {
     (void)c, (void)tolerates, (void)tolerance, (void)start, (void)stops, (void)stop;
     return fmi2OK;
 }
 
 /* What always goes well. */
-#define FINE(name)                   \
-    fmi2Status name(fmi2Component c) { \
-        (void)c;                     \
-        return fmi2OK;               \
+#define FINE(name)                                                                                                     \
+    fmi2Status name(fmi2Component c) {                                                                                 \
+        (void)c;                                                                                                       \
+        return fmi2OK;                                                                                                 \
     }
 FINE(fmi2EnterInitializationMode)
 FINE(fmi2Terminate)

@@ -1,7 +1,7 @@
 /* Functions that must be there, and that the rover does not have: nobody calls them, whatever their arguments. */
-#define ABSENT(name)                                      \
-    __attribute__((visibility("default"))) int name(void) { \
-        return 3;                                         \
+#define ABSENT(name)                                                                                                   \
+    __attribute__((visibility("default"))) int name(void) {                                                            \
+        return 3;                                                                                                      \
     }
 ABSENT(fmi2SetDebugLogging)
 ABSENT(fmi2GetInteger)

@@ -12,9 +12,6 @@ static double wanted(const Robot *robot) {
 }
 
 static double wanted_tangent(const Robot *robot, const Robot *d) {
-    if (fabs(wanted(robot)) > robot->steering_max) {
-        return copysign(d->steering_max, wanted(robot));
-    }
     const double ahead = copysign(1.0, robot->v_command), m = fabs(robot->v_command);
     const double n = ahead * robot->wheelbase * robot->omega_command;
     const double d_n = ahead * (robot->wheelbase * d->omega_command + d->wheelbase * robot->omega_command);
@@ -23,7 +20,11 @@ static double wanted_tangent(const Robot *robot, const Robot *d) {
 }
 
 static double commanded_speed(const Robot *robot) {
-    return robot->speed_max > 0 ? clamp(robot->v_command, robot->speed_max) : robot->v_command;
+    return limited(robot->v_command, robot->speed_max);
+}
+
+static double commanded_steering(const Robot *robot) {
+    return limited(wanted(robot), robot->steering_max);
 }
 
 static double speed_now(const Robot *robot) {
@@ -31,8 +32,7 @@ static double speed_now(const Robot *robot) {
 }
 
 static double steering_now(const Robot *robot) {
-    const double commanded = clamp(wanted(robot), robot->steering_max);
-    return lagged(robot->steering, commanded, robot->sample_time, robot->steering_time_constant);
+    return lagged(robot->steering, commanded_steering(robot), robot->sample_time, robot->steering_time_constant);
 }
 
 void drive_start(Robot *robot) {
@@ -67,14 +67,14 @@ void drive_still(Robot *change) {
 }
 
 void drive_tangent(const Robot *robot, const Robot *d, Robot *change) {
-    const double T = robot->sample_time, d_T = d->sample_time, v = commanded_speed(robot);
-    const bool fastest = robot->speed_max > 0 && fabs(robot->v_command) > robot->speed_max;
-    const double d_v = fastest ? copysign(d->speed_max, robot->v_command) : d->v_command;
-    const double d_speed = lagged_tangent(robot->speed - v, d_v, T, d_T, robot->speed_time_constant,
-                                          d->speed_time_constant);
-    const double behind = robot->steering - clamp(wanted(robot), robot->steering_max);
-    const double d_steering = lagged_tangent(behind, wanted_tangent(robot, d), T, d_T, robot->steering_time_constant,
-                                             d->steering_time_constant);
+    const double T = robot->sample_time, d_T = d->sample_time;
+    const double d_v = limited_tangent(robot->v_command, d->v_command, robot->speed_max, d->speed_max);
+    const double d_speed = lagged_tangent(robot->speed - commanded_speed(robot), d_v, T, d_T,
+                                          robot->speed_time_constant, d->speed_time_constant);
+    const double d_angle =
+        limited_tangent(wanted(robot), wanted_tangent(robot, d), robot->steering_max, d->steering_max);
+    const double d_steering = lagged_tangent(robot->steering - commanded_steering(robot), d_angle, T, d_T,
+                                             robot->steering_time_constant, d->steering_time_constant);
     const double slope = tan(steering_now(robot) + robot->steering_noise);
     const double d_slope = (1.0 + slope * slope) * (d_steering + change->steering_noise);
     change->v = d_speed + change->speed_noise;

@@ -7,19 +7,14 @@
 
 /* Speed of a wheel drive under command: a first-order lag, sampled; without a time constant it is the command. */
 static double wheel_speed(const Robot *robot, double reached, double commanded) {
-    if (robot->wheel_speed_max > 0) {
-        commanded = clamp(commanded, robot->wheel_speed_max);
-    }
-    return lagged(reached, commanded, robot->sample_time, robot->motor_time_constant);
+    return lagged(reached, limited(commanded, robot->wheel_speed_max), robot->sample_time, robot->motor_time_constant);
 }
 
 static double wheel_tangent(const Robot *robot, double reached, double commanded, const Robot *d, double d_commanded) {
-    if (robot->wheel_speed_max > 0 && fabs(commanded) > robot->wheel_speed_max) {
-        d_commanded = copysign(d->wheel_speed_max, commanded);
-        commanded = clamp(commanded, robot->wheel_speed_max);
-    }
-    const double T = robot->sample_time, tau = robot->motor_time_constant;
-    return lagged_tangent(reached - commanded, d_commanded, T, d->sample_time, tau, d->motor_time_constant);
+    const double T = robot->sample_time, tau = robot->motor_time_constant, limit = robot->wheel_speed_max;
+    d_commanded = limited_tangent(commanded, d_commanded, limit, d->wheel_speed_max);
+    return lagged_tangent(reached - limited(commanded, limit), d_commanded, T, d->sample_time, tau,
+                          d->motor_time_constant);
 }
 
 static double true_radius(const Robot *robot) {
@@ -71,7 +66,8 @@ void drive_still(Robot *change) {
 void drive_tangent(const Robot *robot, const Robot *d, Robot *change) {
     const double grip = 1.0 - robot->wheel_slip, d_grip = -d->wheel_slip;
     const double r = true_radius(robot), L = true_track(robot);
-    const double d_r = d->wheel_radius * (1.0 + robot->wheel_radius_error) + robot->wheel_radius * d->wheel_radius_error;
+    const double d_r =
+        d->wheel_radius * (1.0 + robot->wheel_radius_error) + robot->wheel_radius * d->wheel_radius_error;
     const double d_L = d->track * (1.0 + robot->track_error) + robot->track * d->track_error;
     const double left = wheel_speed(robot, robot->drive_left, robot->omega_left) + robot->wheel_noise_left;
     const double right = wheel_speed(robot, robot->drive_right, robot->omega_right) + robot->wheel_noise_right;

@@ -27,7 +27,7 @@ static double wanted(const Robot *robot, int i) {
 }
 
 static double commanded(const Robot *robot, int i) {
-    return robot->wheel_speed_max > 0 ? clamp(wanted(robot, i), robot->wheel_speed_max) : wanted(robot, i);
+    return limited(wanted(robot, i), robot->wheel_speed_max);
 }
 
 static double wheel_speed(const Robot *robot, int i) {
@@ -35,12 +35,10 @@ static double wheel_speed(const Robot *robot, int i) {
 }
 
 static double wheel_tangent(const Robot *robot, const Robot *d, int i) {
-    double d_commanded = (robot->body_radius * d->omega_command + d->body_radius * robot->omega_command -
-                          SIN[i] * d->v_command - wanted(robot, i) * d->wheel_radius) /
-                         robot->wheel_radius;
-    if (robot->wheel_speed_max > 0 && fabs(wanted(robot, i)) > robot->wheel_speed_max) {
-        d_commanded = copysign(d->wheel_speed_max, wanted(robot, i));
-    }
+    const double d_wanted = (robot->body_radius * d->omega_command + d->body_radius * robot->omega_command -
+                             SIN[i] * d->v_command - wanted(robot, i) * d->wheel_radius) /
+                            robot->wheel_radius;
+    const double d_commanded = limited_tangent(wanted(robot, i), d_wanted, robot->wheel_speed_max, d->wheel_speed_max);
     return lagged_tangent(robot->drive[i] - commanded(robot, i), d_commanded, robot->sample_time, d->sample_time,
                           robot->motor_time_constant, d->motor_time_constant);
 }

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from xml.etree.ElementTree import Element, SubElement
 
-from laglab_fmu.variables import Role, Variable
+from laglab_fmu.models import Role, Variable
 
 _OUTPUTS = (Role.STATE, Role.SAMPLED, Role.ALGEBRAIC)
 

@@ -1,4 +1,4 @@
-/* The omnidirectional robot: three wheels a third of a turn apart, whose rollers let them slide along their axes.
+/* A robot's variables: those of its drive, from its own `fields.h`, and those that every robot has.
  *
  * Every field is eight bytes wide, so a Robot has no padding and copies of it compare by their bytes. The fields'
  * meanings, units and bounds are those of the table of variables.
@@ -8,35 +8,26 @@
 
 #include <stdint.h>
 
-#define DRIVE_SLIDES
-
 enum { INTEGRATION_EULER = 1, INTEGRATION_EXACT = 2 };
 
 typedef struct {
+#include "fields.h"
     /* parameters */
-    double wheel_radius, body_radius, wheel_speed_max, motor_time_constant, wheel_radius_error, first_wheel_error;
-    double wheel_noise_variance;
     double sample_time;
     double measurement_variance_x, measurement_variance_y, measurement_variance_theta;
     double x_start, y_start, theta_start;
     int64_t seed, noise, integration;
-    /* parameters that may change on the way */
-    double wheel_noise_gain, measurement_noise_gain;
-    /* inputs: commanded body speeds */
-    double v_command, omega_command;
+    /* one that may change on the way */
+    double measurement_noise_gain;
     /* continuous states */
     double x, y, theta;
     /* held from one sample to the next */
-    double drive[3];       /* what the wheel drives had reached at the sample */
-    double wheel_noise[3]; /* of the sample */
     double x_meas, y_meas, theta_meas; /* z_s = x_s + v_s */
     double elapsed;                    /* time since the sample, in co-simulation */
     int64_t sample;                    /* its index s */
     /* following from the rest */
-    double v, omega, sideways;
+    double v, omega;
     double der_x, der_y, der_theta;
 } Robot;
-
-enum { DRIVE_NOISES = 3 };
 
 #endif

@@ -1,15 +1,14 @@
 """Both model descriptions, made from the one table of variables."""
 
-import uuid
 from collections.abc import Mapping, Sequence
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from laglab_fmu.models import FLEET_NAME, Model, model_of
+from laglab_fmu.archive.structure import structure_2, structure_3
+from laglab_fmu.models import FLEET_NAME, Kind, Model, Role, Variable, token
+from laglab_fmu.models.units import TYPES, UNITS, DeclaredType, Unit
+from laglab_fmu.models.variables import START
 from laglab_fmu.parameters import INTEGRATIONS
-from laglab_fmu.structure import structure_2, structure_3
-from laglab_fmu.units import TYPES, UNITS, DeclaredType, Unit
-from laglab_fmu.variables import START, Kind, Role, Variable
 
 STOP_TIME = 10.0
 """[s] of the default experiment."""
@@ -18,12 +17,6 @@ LOG_CATEGORIES = (
     ("logStatusDiscard", "Values that were refused"),
     ("logStatusError", "Calls that were wrong"),
 )
-
-
-def token(fmu: str) -> str:
-    """Says that a description and a binary belong together: of this FMU, made of this table."""
-    table = model_of(fmu).variables
-    return "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, repr((fmu, table, TYPES, UNITS)))) + "}"
 
 
 _CAUSALITY = {

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from laglab_fmu.variables import Kind, Role, Variable
+from laglab_fmu.models import Kind, Role, Variable
 
 _C_TYPE = {
     Kind.FLOAT64: "TYPE_FLOAT64",

@@ -6,6 +6,8 @@ import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from laglab_fmu.archive.contents import c_files, fmi_headers, fmu_contents
+from laglab_fmu.archive.mach_o import signed, universal
 from laglab_fmu.compiler import (
     Platform,
     c_compiler,
@@ -13,8 +15,6 @@ from laglab_fmu.compiler import (
     host_platform,
     zig_compiler,
 )
-from laglab_fmu.contents import c_files, fmi_headers, fmu_contents
-from laglab_fmu.mach_o import signed, universal
 from laglab_fmu.models import MODELS, Model
 
 ZIP_DATE = (1980, 1, 1, 0, 0, 0)

@@ -10,13 +10,12 @@ from xml.etree.ElementTree import Element, SubElement
 
 import fmpy
 
+from laglab_fmu.archive.description import model_description_2, model_description_3, xml_text
+from laglab_fmu.archive.header import variables_header
 from laglab_fmu.compiler import Platform
-from laglab_fmu.description import model_description_2, model_description_3, token, xml_text
 from laglab_fmu.errors import BuildError
-from laglab_fmu.header import variables_header
-from laglab_fmu.models import FLEET_NAME, ROBOT, Model, model_of
-from laglab_fmu.units import TYPES
-from laglab_fmu.variables import MODEL_NAME, Role, Variable
+from laglab_fmu.models import FLEET_NAME, ROBOT, Model, Role, Variable, model_of, token
+from laglab_fmu.models.units import TYPES
 
 HEADERS = {
     2: ("fmi2Functions.h", "fmi2FunctionTypes.h", "fmi2TypesPlatform.h"),
@@ -38,7 +37,7 @@ def own_files(folder: str) -> Path:
     Raises:
         BuildError: in neither place.
     """
-    package = Path(__file__).parent
+    package = Path(__file__).parents[1]
     for place in (package / folder, package.parent / folder):
         if place.is_dir():
             return place
@@ -174,6 +173,6 @@ def _reference_results(identifier: str) -> dict[str, bytes]:
         attributes = {"type": "text/csv", "source": name, "role": role}
         SubElement(root, "Related", attributes, description=description)
         files[f"extra/{REFERENCE_LAYER}/{name}"] = (
-            own_files("content") / f"{MODEL_NAME}_{end}.csv"
+            own_files("content") / f"{ROBOT.name}_{end}.csv"
         ).read_bytes()
     return files | {f"extra/{REFERENCE_LAYER}/fmi-ls-manifest.xml": xml_text(root)}

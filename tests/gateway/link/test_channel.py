@@ -2,7 +2,6 @@
 
 from collections import Counter
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,19 +11,15 @@ from hypothesis import strategies as st
 from laglab_gateway import (
     Burst,
     Channel,
-    ConfigError,
     Event,
     ExtraDelay,
     FileRecorder,
     Impairments,
-    LinkRow,
     RandomFates,
     RecordedFates,
-    TimelineError,
     first_tick,
     read_link_log,
 )
-from laglab_gateway.link.fates import Fate, FateKind
 from laglab_protocol import Command
 
 TS = 0.01
@@ -148,6 +143,13 @@ def test_outages_and_events_come_and_go_at_their_times() -> None:
     assert not event.concerns("measurement")
 
 
+@pytest.mark.parametrize("tick", [0, 1, 3, 7, 29, 57])
+def test_an_instant_belongs_to_the_tick_that_is_not_earlier(tick: int) -> None:
+    """Sums of doubles may be a little late: 0.1 + 0.2 is still tick 3."""
+    assert first_tick(sum([0.1] * tick), 0.1) == tick
+    assert first_tick(0.1 * tick + 0.001, 0.1) == tick + 1
+
+
 def test_a_log_replays_to_the_same_link_on_another_run(tmp_path: Path) -> None:
     link = Impairments(
         ExtraDelay("exponential", 0.02), loss=0.2, duplicate=0.2, bit_error_rate=1e-3
@@ -183,102 +185,6 @@ def test_frames_that_enter_in_one_tick_are_replayed_each_as_its_own() -> None:
     assert again.take_log() == log
 
 
-@pytest.mark.parametrize("tick", [0, 1, 3, 7, 29, 57])
-def test_an_instant_belongs_to_the_tick_that_is_not_earlier(tick: int) -> None:
-    """Sums of doubles may be a little late: 0.1 + 0.2 is still tick 3."""
-    assert first_tick(sum([0.1] * tick), 0.1) == tick
-    assert first_tick(0.1 * tick + 0.001, 0.1) == tick + 1
-
-
 def test_frames_that_the_log_does_not_have_are_delivered_in_time() -> None:
     again: Channel[Command] = Channel("command", 2, TS, RecordedFates([]))
     assert cross(again, 5) == [(tick, tick + 2) for tick in range(5)]
-
-
-@pytest.mark.parametrize("text", ["", "a,b\n", "direction\ncommand\n", "\0"])
-def test_what_is_no_link_log_is_refused_by_name(tmp_path: Path, text: str) -> None:
-    path = tmp_path / "other.csv"
-    path.write_text(text)
-    with pytest.raises(TimelineError, match=r"other\.csv"):
-        read_link_log(path, "command")
-
-
-UNBELIEVABLE = {
-    "0,0,0,35,delivered,nan": "extra must be from 0",
-    "0,0,0,35,delivered,inf": "extra must be from 0",
-    "0,0,0,35,delivered,-0.01": "extra must be from 0",
-    "0,0,0,35,delivered,1e300": "extra must be from 0",
-    "-1,0,0,35,delivered,0": "a tick must be 0 or more",
-    "10000000000000,0,0,35,delivered,0": "below 10000000",
-    "0,0,0,-35,delivered,0": "size must be 0 or more",
-    "0,1,0,35,delivered,0": "frames of a tick are counted from 0",
-    "0,0,1,35,delivered,0": "copies of a frame are counted from 0",
-}
-
-
-@pytest.mark.parametrize("row", UNBELIEVABLE)
-def test_what_no_run_records_is_refused(tmp_path: Path, row: str) -> None:
-    path = tmp_path / "link.csv"
-    path.write_text(",".join(LinkRow._fields) + f"\ncommand,{row}\n")
-    with pytest.raises(TimelineError, match=UNBELIEVABLE[row]):
-        read_link_log(path, "command")
-
-
-def test_a_replay_begins_again_at_its_end_in_both_directions_at_once() -> None:
-    rows = [LinkRow("command", tick, 0, 0, 35, *told) for tick, told in enumerate(TOLD)]
-    fates = RecordedFates(rows, range(5))
-    got = [fates.of(tick, tick * TS, b"x")[0] for tick in range(15)]
-    assert [each.kind for each in got[:3]] == ["delivered", "lost", "delivered"]
-    assert [each.kind for each in got[3:5]] == ["delivered"] * 2, "no record of these ticks"
-    assert got[5:10] == got[:5] == got[10:]
-    assert [each.extra for each in got[:5]] == [0.01, 0.0, 0.03, 0.0, 0.0]
-
-
-TOLD = (("delivered", 0.01), ("lost", 0.0), ("delivered", 0.03))
-
-
-def test_what_is_in_a_recorded_frames_datagram_shares_its_fate() -> None:
-    fates = RecordedFates([LinkRow("command", 7, 0, 0, 35, "lost", 0.0)])
-    for tick in (7, 8, 107):
-        assert [fates.of(tick, 0.0, b"x")[0].kind for _ in range(3)] == ["lost"] * 3
-    assert RecordedFates([]).of(3, 0.0, b"x") == [Fate(FateKind.DELIVERED, 0.0, b"x")]
-
-
-@pytest.mark.parametrize("correlation", [0.0, 0.9])
-def test_a_table_of_delays_is_drawn_as_it_is_and_as_it_wanders(correlation: float) -> None:
-    quantiles = (0.01, 0.02, 0.05, 0.1)
-    table = ExtraDelay("table", 0.005, quantiles=quantiles, correlation=correlation)
-    fates = RandomFates(Impairments(extra_delay=table), [], np.random.default_rng(3))
-    drawn = np.array([fates.of(k, k * TS, b"x")[0].extra for k in range(20_000)])
-    at = np.quantile(drawn, [0.0, 1 / 3, 2 / 3, 1.0])
-    np.testing.assert_allclose(at, np.array(quantiles) + 0.005, rtol=0.08)
-    ranks = np.argsort(np.argsort(drawn))
-    assert np.corrcoef(ranks[1:], ranks[:-1])[0, 1] == pytest.approx(correlation, abs=0.03)
-
-
-@pytest.mark.parametrize("distribution", ["constant", "uniform", "normal", "exponential"])
-def test_delays_that_wander_scatter_as_those_that_do_not(distribution: Any) -> None:
-    spread = [
-        RandomFates(
-            Impairments(extra_delay=ExtraDelay(distribution, 0.04, 0.01, correlation=kept)),
-            [],
-            np.random.default_rng(5),
-        )
-        for kept in (0.0, 0.5)
-    ]
-    drawn = [[each.of(k, 0.0, b"x")[0].extra for k in range(10_000)] for each in spread]
-    shares = [0.05, 0.5, 0.95]
-    np.testing.assert_allclose(*(np.quantile(each, shares) for each in drawn), rtol=0.1)
-
-
-@pytest.mark.parametrize(
-    ("values", "said"),
-    [
-        ({"distribution": "table"}, "quantiles: a table has two delays or more"),
-        ({"quantiles": (0.2, 0.1)}, "quantiles: must rise from one to the next"),
-        ({"correlation": 1.0}, "correlation: must be below 1"),
-    ],
-)
-def test_delays_that_cannot_be_are_refused(values: dict[str, Any], said: str) -> None:
-    with pytest.raises(ConfigError, match=said):
-        ExtraDelay(**values)

@@ -1,11 +1,15 @@
 """The robots that ship: what each is called, and its table of variables."""
 
+import uuid
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from laglab_fmu.others import CAR, OMNI
-from laglab_fmu.variables import MODEL_NAME, VARIABLES, Variable
+from laglab_fmu.models.car import CAR
+from laglab_fmu.models.differential import DIFFERENTIAL
+from laglab_fmu.models.omni import OMNI
+from laglab_fmu.models.units import TYPES, UNITS
+from laglab_fmu.models.variables import Variable
 
 FLEET_NAME = "Fleet"
 
@@ -35,10 +39,10 @@ class Model:
 
 
 ROBOT = Model(
-    MODEL_NAME,
+    "Robot",
     "differential",
     "A differential-drive robot with wheel and sensor noise",
-    VARIABLES,
+    DIFFERENTIAL,
     has_fleet=True,
 )
 MODELS = (
@@ -51,3 +55,9 @@ MODELS = (
 def model_of(fmu: str) -> Model:
     """Whose FMU that is."""
     return next(model for model in MODELS if fmu in model.fmus)
+
+
+def token(fmu: str) -> str:
+    """Says that a description and a binary belong together: of this FMU, made of this table."""
+    table = model_of(fmu).variables
+    return "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, repr((fmu, table, TYPES, UNITS)))) + "}"

@@ -1,0 +1,1 @@
+"""An FMU is an archive: what lies in it, and how it is built."""
