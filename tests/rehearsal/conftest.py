@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 
@@ -35,15 +35,50 @@ def laglab(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
     return call
 
 
+class Ended(NamedTuple):
+    """How a command ended, and what it had said."""
+
+    code: int
+    out: str
+    err: str
+
+
 @pytest.fixture
-def rehearsed(tmp_path: Path) -> Callable[..., dict[str, Any]]:
+def ended(capsys: pytest.CaptureFixture[str]) -> Callable[..., Ended]:
+    """``laglab ARGUMENTS`` in this process, where the current directory is."""
+
+    def call(*arguments: object) -> Ended:
+        capsys.readouterr()
+        with pytest.raises(SystemExit) as ended:
+            main([str(each) for each in arguments])
+        assert isinstance(ended.value.code, int)
+        return Ended(ended.value.code, *capsys.readouterr())
+
+    return call
+
+
+@pytest.fixture
+def refused(ended: Callable[..., Ended]) -> Callable[..., str]:
+    """The one line with which ``laglab ARGUMENTS`` is refused."""
+
+    def call(*arguments: object, code: int = 2) -> str:
+        said = ended(*arguments)
+        assert said.code == code, said
+        (line,) = said.err.splitlines()
+        assert line.startswith("laglab: ")
+        return line
+
+    return call
+
+
+@pytest.fixture
+def rehearsed(tmp_path: Path, ended: Callable[..., Ended]) -> Callable[..., dict[str, Any]]:
     """Run a scenario inline and give its summary; the results are in ``tmp_path / "run"``."""
 
     def call(*arguments: str, exit_code: int = 0) -> dict[str, Any]:
         out = tmp_path / "run"
-        with pytest.raises(SystemExit) as ended:
-            main(["run", *arguments, "--transport", "inline", "--out", str(out), "--force"])
-        assert ended.value.code == exit_code
+        said = ended("run", *arguments, "--transport", "inline", "--out", out, "--force")
+        assert said.code == exit_code, said
         summary: dict[str, Any] = json.loads((out / "summary.json").read_text())
         return summary
 

@@ -1,5 +1,6 @@
 """Ctrl-C at any moment: one line, exit 130, and nothing is left: no process, folder or port."""
 
+import json
 import os
 import random
 import signal
@@ -8,11 +9,15 @@ import sys
 import tempfile
 import time
 import uuid
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
+from laglab.scenario import load
+from laglab_gateway import read_trace
+
+Start = Callable[..., "subprocess.Popen[str]"]
 LONG = ("lab", "--duration", "3600")
 COMMANDS = {
     "inline": ("run", *LONG, "--transport", "inline"),
@@ -132,3 +137,38 @@ def test_what_we_were_started_to_ignore_stays_ignored(ignored: str, tmp_path: Pa
     _, errors = process.communicate(timeout=10)
     assert process.returncode == 130
     assert errors.splitlines()[-1] == "laglab: interrupted"
+
+
+def wait_for_rows(trace: Path, rows: int = 50) -> None:
+    while not trace.exists() or trace.read_bytes().count(b"\n") <= rows:
+        time.sleep(0.02)
+
+
+@pytest.mark.parametrize("transport", ["inline", "udp"])
+def test_a_run_without_end_lasts_until_ctrl_c_and_its_results_are_written(
+    start: Start, tmp_path: Path, transport: str
+) -> None:
+    options = ("--duration", "inf", "--transport", transport, "--out", "run")
+    run = start("run", "fig6", *options)
+    wait_for_rows(tmp_path / "run" / "trace.csv")
+    run.send_signal(signal.SIGINT)
+    _, errors = run.communicate(timeout=20)
+    assert run.returncode == 130
+    assert "Traceback" not in errors
+    columns = read_trace(tmp_path / "run" / "trace.csv")
+    assert columns["tick"].tolist() == list(range(len(columns["tick"])))
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text())
+    assert summary["verdict"].startswith("interrupted at tick")
+    assert load(str(tmp_path / "run" / "scenario.toml")).last_tick is None
+
+
+def test_the_two_sides_of_a_run_without_end_meet_too(
+    start: Start, listening_port: Callable[["subprocess.Popen[str]"], str], tmp_path: Path
+) -> None:
+    options = ("fig6", "--duration", "inf")
+    gateway = start("gateway", *options, "--endpoint", "udpin://127.0.0.1:0", "--out", "run")
+    link = ("--endpoint", f"udpout://127.0.0.1:{listening_port(gateway)}")
+    station = start("controller", *options, *link)
+    wait_for_rows(tmp_path / "run" / "trace.csv")
+    gateway.send_signal(signal.SIGINT)
+    assert gateway.wait(10) == station.wait(10) == 130

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from laglab.command import main
 from laglab.link.advice import suggestions
 from laglab.link.fitting import (
     choices,
@@ -26,7 +25,8 @@ from laglab.link.told import overtaken
 from laglab.scenario import load
 from laglab_gateway import Burst, ExtraDelay, Impairments
 
-Said = Callable[..., str]
+Said = Refused = Callable[..., str]
+Ended = Callable[..., tuple[int, str, str]]
 TS = 0.01
 NONE = Flow(np.empty(0), np.empty(0), 100)
 UP = Impairments(
@@ -46,18 +46,15 @@ MEASURED = measured()
 
 
 @pytest.fixture
-def said(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> Said:
+def said(tmp_path: Path, ended: Ended, monkeypatch: pytest.MonkeyPatch) -> Said:
     """What a command says, in a folder of its own and 80 columns; it ends well."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")
 
     def call(*arguments: str) -> str:
-        with pytest.raises(SystemExit) as ended:
-            main(list(arguments))
-        assert ended.value.code == 0
-        return capsys.readouterr().out
+        code, out, err = ended(*arguments)
+        assert code == 0, err
+        return out
 
     return call
 
@@ -220,18 +217,14 @@ def test_what_cannot_be_fitted_or_drawn_is_one_line(
     delay: float | None,
     options: tuple[str, ...],
     said: str,
+    refused: Refused,
     tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.chdir(tmp_path)
     flow = Flow(TS * np.arange(9.0), np.full(9, delay), 100) if delay else NONE
     write_link_log(MeasuredLink(flow, flow, TS), tmp_path / "link.csv")
-    with pytest.raises(SystemExit) as ended:
-        main(["link", "fit", *options])
-    assert ended.value.code == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert said in line
+    assert said in refused("link", "fit", *options)
     assert not (tmp_path / "link.toml").exists()
 
 
@@ -250,18 +243,11 @@ BAD = {
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_what_cannot_be_fitted_is_one_line(
-    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_cannot_be_fitted_is_one_line(name: str, tmp_path: Path, refused: Refused) -> None:
     text, said = BAD[name]
     if text is not None:
         (tmp_path / name).write_text(text)
-    with pytest.raises(SystemExit) as ended:
-        main(["link", "fit", str(tmp_path / name), "--out", str(tmp_path / "link.toml")])
-    error = capsys.readouterr().err
-    assert ended.value.code == 2
-    assert said in error
-    assert len(error.splitlines()) == 1
+    assert said in refused("link", "fit", tmp_path / name, "--out", tmp_path / "link.toml")
 
 
 def test_one_direction_alone_can_be_fitted() -> None:

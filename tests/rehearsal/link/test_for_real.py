@@ -15,9 +15,9 @@ import pytest
 from laglab.link.measured import read_measured
 from laglab.scenario import load
 
-from .namespaces import Socket, emulate, inside, joined, machines
+from ..namespaces import Socket, emulate, inside, joined, machines
 
-PAGE = (Path(__file__).parents[2] / "docs" / "link.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[3] / "docs" / "link.md").read_text(encoding="utf-8")
 CASE = re.findall(r"```sh\n# (.*?)\n(.*?)```", PAGE, flags=re.DOTALL)
 ROBOT, STATION = "on the robot's machine", "on the station's machine"
 UP, DOWN, JITTER, LOSS = 0.030, 0.020, 0.003, 0.01
@@ -36,7 +36,7 @@ def elsewhere(start_program: Start) -> Iterator[tuple[str, str]]:
         far, near = joined(robot, between, "10.213.78", "ab")
         here, _ = joined(between, station, "10.213.77", "cd")
         link = map(str, (UP, DOWN, JITTER, LOSS))
-        program = str(Path(__file__).with_name("relay.py"))
+        program = str(Path(__file__).parents[1] / "relay.py")
         start_program(
             *inside(between, sys.executable, program, here.address, PORT, far.address, *link)
         )

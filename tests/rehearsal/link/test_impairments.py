@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from laglab.command import main
 from laglab_gateway import read_link_log, read_trace
 from laglab_gateway.link.log import LINK_HEADER
 from laglab_protocol import Statustext, read_tlog
 
 Laglab = Callable[..., subprocess.CompletedProcess[str]]
 Rehearsed = Callable[..., dict[str, Any]]
+Ended = Callable[..., Any]
+Refused = Callable[..., str]
 
 
 @pytest.mark.slow
@@ -145,17 +146,12 @@ BAD_TIMELINES = {
 
 @pytest.mark.parametrize("name", BAD_TIMELINES)
 def test_a_bad_timeline_is_one_line_that_names_it(
-    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    name: str, tmp_path: Path, refused: Refused
 ) -> None:
     text, named = BAD_TIMELINES[name]
     if text is not None:
         (tmp_path / name).write_text(text)
-    with pytest.raises(SystemExit) as ended:
-        main(["run", "fig6", "--timeline", str(tmp_path / name)])
-    error = capsys.readouterr().err
-    assert ended.value.code == 2
-    assert named in error
-    assert len(error.splitlines()) == 1
+    assert named in refused("run", "fig6", "--timeline", tmp_path / name)
 
 
 def test_what_was_really_run_holds_the_timeline(laglab: Laglab, tmp_path: Path) -> None:
@@ -170,14 +166,12 @@ def test_what_was_really_run_holds_the_timeline(laglab: Laglab, tmp_path: Path) 
 
 
 def test_a_run_moves_with_what_it_refers_to(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ended: Ended
 ) -> None:
     monkeypatch.chdir(tmp_path)
 
     def run(*arguments: str) -> None:
-        with pytest.raises(SystemExit) as ended:
-            main(["run", *arguments, "--duration", "1", "--transport", "inline"])
-        assert ended.value.code == 0
+        assert ended("run", *arguments, "--duration", "1", "--transport", "inline").code == 0
 
     run("lab-radio", "--out", "runs/radio")
     run("lab", "--timeline", "runs/radio/link.csv", "--out", "runs/again")
