@@ -15,7 +15,6 @@ from laglab.studies.many import run_many, schedule_of, why_one_by_one
 from .many_kept import furthest, kept
 
 SHARP = 1e-9
-COLUMNS = ["x", "y", "theta", "x_est", "y_est", "theta_est", "v", "omega"]
 
 
 def both(**impairments):
