@@ -22,6 +22,8 @@ STRANGERS_DATAGRAM = 2048
 
 STRANGERS_A_SECOND = 8192
 """Bytes of strangers' that are read while there is a peer: a ground station says a tenth."""
+STRANGERS_EVERY = 2e-4
+"""[s] Between two looks for them while there is a peer."""
 
 
 class _Udp(ABC):
@@ -94,6 +96,7 @@ class UdpIn(_Udp):
             raise _cannot("bind", self.name, error) from error
         self._address = self._socket.getsockname()
         self._apart: socket.socket | None = None
+        self._next_look = 0.0
         self._strangers = Ration(STRANGERS_A_SECOND, STRANGERS_DATAGRAM, LEAST_BYTES)
         self._ready = selectors.DefaultSelector()
         self._watched: set[socket.socket] = set()
@@ -128,12 +131,22 @@ class UdpIn(_Udp):
                 raise _cannot(f"send to {where} from", self.name, error) from error
 
     def _read(self) -> bytes | None:
-        data = self._read_from(self._apart, LARGEST_DATAGRAM) if self._apart else None
-        if data is None and self._may_hear_strangers:
-            data = self._read_from(self._socket, STRANGERS_DATAGRAM)
-            if data is not None and self.sender != self.peer:
-                self._strangers.take(len(data))
+        if self._apart is not None:
+            data = self._read_from(self._apart, LARGEST_DATAGRAM)
+            if data is not None or not self._is_strangers_turn():
+                return data
+        data = self._read_from(self._socket, STRANGERS_DATAGRAM)
+        if data is not None and self.sender != self.peer:
+            self._strangers.take(len(data))
         return data
+
+    def _is_strangers_turn(self) -> bool:
+        """Not at each look: the peer's next datagram would be found later for it."""
+        now = monotonic()
+        if now < self._next_look:
+            return False
+        self._next_look = now + STRANGERS_EVERY
+        return self._strangers.left(now) > 0
 
     def _read_from(self, queue: socket.socket, size: int) -> bytes | None:
         try:
