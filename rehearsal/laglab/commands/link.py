@@ -9,18 +9,27 @@ from laglab.commands.group import group
 from laglab.commands.options import KeyOption, WidthOption
 from laglab.extras import DRAWING, require
 from laglab.files import file_place, write_whole
-from laglab.link.advice import suggestions
-from laglab.link.errors import LinkPlaceError
-from laglab.link.figure import draw_fit
-from laglab.link.fitting import fit as fit_link
-from laglab.link.importing import How, read_link, read_table
-from laglab.link.link_table import FittedLink, link_toml
-from laglab.link.measured import read_measured, write_link_log
-from laglab.link.probing import ProbePlan, real_sizes
-from laglab.link.probing import echo as answer
-from laglab.link.probing import probe as measure
-from laglab.link.scenario_of import scenario_toml
-from laglab.link.told import choices_table, fit_table, print_measured
+from laglab.link import (
+    FittedLink,
+    How,
+    LinkPlaceError,
+    ProbePlan,
+    choices_table,
+    draw_fit,
+    fit_table,
+    link_toml,
+    print_measured,
+    read_link,
+    read_measured,
+    read_table,
+    real_sizes,
+    scenario_toml,
+    suggestions,
+    write_link_log,
+)
+from laglab.link import echo as answer
+from laglab.link import fit as fit_link
+from laglab.link import probe as measure
 from laglab.progress import counting
 from laglab.results.figures.saving import picture_place, save
 from laglab.runs.station_side import station_config
