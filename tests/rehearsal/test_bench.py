@@ -13,6 +13,7 @@ from laglab.bench import Bench, Contest, Figure, Report, Turn, Unit, run, show, 
 from laglab.bench import filter as filter_bench
 from laglab.bench.table import significant
 from laglab.command import main
+from laglab.files import json_of
 
 
 def quiet(_: str) -> None:
@@ -73,7 +74,7 @@ def test_a_timed_turn_tells_of_one_piece_of_its_work() -> None:
 
 def test_the_report_is_read_as_it_was_written() -> None:
     report = run(made([]), 3, quiet)
-    assert msgspec.json.decode(report.to_json(), type=Report) == report
+    assert msgspec.json.decode(json_of(report), type=Report) == report
     assert (report.schema, report.bench, report.rounds) == (1, "walk", 3)
     assert report.laglab == package.__version__
     assert report.machine.cpus >= 1

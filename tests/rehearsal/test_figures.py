@@ -1,5 +1,6 @@
 """What the figures show, by their artists; not by their pixels."""
 
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from matplotlib.quiver import Quiver
 
 import laglab
 from laglab.command import main
-from laglab.results.figures import INCHES, Width, draw_runs
+from laglab.results.figures import INCHES, Width, draw_runs, legend, printed, sheet
 from laglab.results.link_view import link_view
 from laglab.scenario import load
 from laglab.scenario.differences import differing
@@ -27,6 +28,22 @@ def radio() -> laglab.Run:
 @pytest.fixture(scope="module")
 def shadowed() -> laglab.Run:
     return laglab.run("fig8", {"duration": 1.0, "estimator.compare": ["ekf", "delayed-ekf"]})
+
+
+LONG = "a_module_with_a_long_name:AnEstimatorWithAVeryLongNameIndeed"
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_long_names_leave_room_for_what_they_name(width: Width) -> None:
+    """matplotlib warns, which is an error here, where there is none."""
+    with printed():
+        figure = sheet(INCHES[width], 1.0)
+        for axes in figure.subplots(1, 3):
+            axes.plot([0, 1], label=LONG)
+            axes.plot([1, 0], label=f"{LONG}Too")
+        legend(figure.axes[0])
+        figure.savefig(BytesIO())
+    assert names(figure.axes[0]) == ["…" + LONG[-25:], "…" + f"{LONG}Too"[-25:]]
 
 
 @pytest.fixture(scope="module")

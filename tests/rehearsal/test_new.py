@@ -62,7 +62,7 @@ def test_what_is_made_is_installed_listed_checked_and_run(
     assert "my-own 0.1.0" in listed.stdout
     checked = run("laglab", "check", "my-own")
     assert checked.returncode == 0, checked.stdout + checked.stderr
-    told = ("--set", "estimator.guard=false", "--duration", "1", "--out", "run")
+    told = ("--duration", "1", "--out", "run")
     done = run("laglab", "run", "lab", option, "my-own", *told)
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "run" / "trace.csv").exists()

@@ -7,8 +7,7 @@ import pytest
 
 from laglab.command import main
 from laglab.errors import ResultsError
-from laglab.results.whole import whole_file
-from laglab.results.writable import file_place
+from laglab.files import file_place, whole_file, write_whole
 
 LONG_NAME = "x" * 300
 NO_FOLDERS = ["file", "file/below", "/proc/none", LONG_NAME]
@@ -164,8 +163,7 @@ def test_what_was_there_stays_until_the_new_is_whole(broken_by: BaseException) -
     with pytest.raises((KeyboardInterrupt, ResultsError)):
         broken()
     assert Path("old").read_text() == "of before"
-    with whole_file(Path("old")) as file:
-        file.write(b"new")
+    write_whole(Path("old"), b"new")
     assert Path("old").read_text() == "new"
     assert not list(Path().glob("*.new")) + list(Path().glob(".*.new"))
 

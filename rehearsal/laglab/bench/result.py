@@ -5,8 +5,6 @@ import platform
 from dataclasses import dataclass
 from datetime import datetime
 
-import msgspec
-
 SCHEMA = 1
 """Of the JSON; another number, another meaning of a field."""
 
@@ -77,7 +75,3 @@ class Report:
     rounds: int
     results: tuple[Result, ...]
     figures: tuple[Figure, ...]
-
-    def to_json(self) -> str:
-        """For people too: indented. `msgspec.json.decode(text, type=Report)` reads it."""
-        return msgspec.json.format(msgspec.json.encode(self), indent=2).decode() + "\n"

@@ -12,9 +12,8 @@ from laglab.bench import filter as filter_bench
 from laglab.bench.round_trip import Link
 from laglab.commands.group import group
 from laglab.extras import SEEING, STEPPING, require
+from laglab.files import file_place, json_of, write_whole
 from laglab.progress import status
-from laglab.results.whole import whole_file
-from laglab.results.writable import file_place
 from laglab.tables import terminal
 from laglab_protocol import require_terminals
 
@@ -110,5 +109,4 @@ def _run(what: bench.Bench, rounds: int, json: Path | None) -> None:
         report = bench.run(what, rounds, tell)
     bench.show(report, terminal())
     if json:
-        with whole_file(json) as file:
-            file.write(report.to_json().encode())
+        write_whole(json, json_of(report))

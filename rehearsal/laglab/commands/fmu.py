@@ -8,8 +8,8 @@ import typer
 import laglab_fmu
 from laglab.commands.group import group
 from laglab.extras import STEPPING, require
+from laglab.files import folder_place
 from laglab.progress import status
-from laglab.results.writable import folder_place
 
 app = group("The robot as an FMU.")
 

@@ -8,22 +8,30 @@ import typer
 from laglab.commands.group import group
 from laglab.commands.options import KeyOption, WidthOption
 from laglab.extras import DRAWING, require
-from laglab.link.advice import suggestions
-from laglab.link.errors import LinkPlaceError
-from laglab.link.figure import draw_fit
-from laglab.link.fitting import fit as fit_link
-from laglab.link.importing import How, read_link, read_table
-from laglab.link.link_table import FittedLink, link_toml
-from laglab.link.measured import read_measured, write_link_log
-from laglab.link.probing import ProbePlan, real_sizes
-from laglab.link.probing import echo as answer
-from laglab.link.probing import probe as measure
-from laglab.link.scenario_of import scenario_toml
-from laglab.link.told import choices_table, fit_table, print_measured
+from laglab.files import file_place, write_whole
+from laglab.link import (
+    FittedLink,
+    How,
+    LinkPlaceError,
+    ProbePlan,
+    choices_table,
+    draw_fit,
+    fit_table,
+    link_toml,
+    print_measured,
+    read_link,
+    read_measured,
+    read_table,
+    real_sizes,
+    scenario_toml,
+    suggestions,
+    write_link_log,
+)
+from laglab.link import echo as answer
+from laglab.link import fit as fit_link
+from laglab.link import probe as measure
 from laglab.progress import counting
 from laglab.results.figures.saving import picture_place, save
-from laglab.results.whole import whole_file
-from laglab.results.writable import file_place
 from laglab.runs.station_side import station_config
 from laglab.scenario import load
 from laglab.tables import say, terminal
@@ -171,9 +179,8 @@ def import_(
     out = out or Path("link.csv" if table is None else "link.toml")
     file_place("--out", out)
     if table is not None:
-        with whole_file(out) as written:
-            late = Impairments(extra_delay=table)
-            written.write(link_toml(FittedLink(0, 0, late, late)).encode())
+        late = Impairments(extra_delay=table)
+        write_whole(out, link_toml(FittedLink(0, 0, late, late)))
     else:
         sizes = real_sizes(Sender(ROBOT_SYSTEM, ROBOT_COMPONENT))
         measured = read_link(file, How(sizes, interval, clocks_within, back))
@@ -231,15 +238,14 @@ def fit(
     on = load(scenario, {"sample_time": interval})
     found = fit_link(read_measured(file, interval, (n, m)), late)
     fitted = scenario_toml(on, found.link)
-    with whole_file(out) as written:
-        written.write(fitted.encode())
+    write_whole(out, fitted)
     console = terminal()
     console.print(fit_table(found))
     law = station_config(on).law
     margin = delay_margin(law, interval) if isinstance(law, PolarLaw) else None
     console.print(choices_table(found, margin))
     for line in suggestions(found):
-        print(line)
+        console.print(line, highlight=False)
     print(out)
     if figure is not None:
         save(draw_fit(found, width), figure)

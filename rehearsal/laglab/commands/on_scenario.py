@@ -6,6 +6,7 @@ from typing import Annotated, Any, NamedTuple
 
 import typer
 
+from laglab.errors import ScenarioError
 from laglab.scenario import assignment, load, read_timeline, shipped_names
 from laglab.scenario.keys import NO_UNIT, rows
 from laglab.tables import say
@@ -127,7 +128,10 @@ def on_scenario(
 
     def wrapper(scenario: str, **options: Any) -> None:
         overrides = _overrides(options)
-        command(load(scenario, overrides, say), **options)
+        loaded = load(scenario, overrides, say)
+        if "plant.fmi" in overrides and not loaded.plant.ships:
+            raise ScenarioError(f"--fmi: {loaded.plant.called} is as it was brought: leave it out")
+        command(loaded, **options)
 
     keyword = inspect.Parameter.KEYWORD_ONLY
     parameters = [*_parameters(by_default), *(each.replace(kind=keyword) for each in own)]

@@ -8,9 +8,8 @@ import typer
 
 from laglab.commands.group import group
 from laglab.commands.options import KeyOption
+from laglab.files import file_place, folder_place, write_whole
 from laglab.progress import status
-from laglab.results.whole import whole_file
-from laglab.results.writable import file_place, folder_place
 from laglab.selftest import self_test as parsers_tested
 from laglab_conformance import Pace, Scope, Side, Waits
 from laglab_conformance import conform as test_conformance
@@ -66,8 +65,7 @@ def install() -> None:
     From then on its tools know it: mavlogdump.py --dialect laglab robot.tlog.
     """
     path = file_place("pymavlink:", place_in_pymavlink())
-    with whole_file(path) as file:
-        file.write(GENERATED.read_bytes())
+    write_whole(path, GENERATED.read_bytes())
     print(path)
 
 
@@ -154,6 +152,5 @@ def conform(
         report = test_conformance(url, side, key, waits, how, scope, progress)
     print(report.table())
     if junit:
-        with whole_file(junit) as file:
-            file.write(report.junit().encode())
+        write_whole(junit, report.junit())
     raise typer.Exit(0 if report.conforms else 1)

@@ -8,12 +8,12 @@ import typer
 from laglab.commands.options import WidthOption
 from laglab.errors import ScenarioError
 from laglab.extras import DRAWING, SEEING, require
+from laglab.files import folder_place
 from laglab.results.figures import save
 from laglab.results.place import REPORT_FILE
 from laglab.results.replaying import draw_replays, replayed_run, replays_table
 from laglab.results.run import SCENARIO_FILE, Run
 from laglab.results.shadows import collected, file_name, kept_rows, shadow_rows
-from laglab.results.writable import folder_place
 from laglab.scenario import load
 from laglab.scenario.tables.estimator import COMPARABLE
 from laglab.tables import terminal

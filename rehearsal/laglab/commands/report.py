@@ -7,8 +7,8 @@ import typer
 
 from laglab.commands.options import RunsArgument
 from laglab.extras import SEEING, require
+from laglab.files import file_place
 from laglab.results.run import open_run
-from laglab.results.writable import file_place
 
 
 def report(

@@ -8,8 +8,8 @@ from rich.table import Table
 
 from laglab.commands.options import WorkersOption, chosen
 from laglab.extras import REHEARSING, require
+from laglab.files import folder_place
 from laglab.progress import tracked
-from laglab.results.writable import folder_place
 from laglab.studies.reproduce import CLAIMS, Entry, entries, trying, write_report
 from laglab.tables import plain_table, terminal
 

@@ -6,8 +6,8 @@ from typing import Annotated
 import typer
 
 from laglab.extras import REHEARSING, require
+from laglab.files import folder_place
 from laglab.progress import passing
-from laglab.results.writable import folder_place
 from laglab.soak import Soak, repeated, require_processes, summary_tables, verdict
 from laglab.tables import terminal
 from laglab_protocol import require_terminals

@@ -74,7 +74,7 @@ def sweep(
     ):
         compute(chosen, folder, executor, done, force)
     said = summary(chosen, folder, plan)
-    print(said)
+    terminal().print(said, highlight=False)
     if report:
         from laglab.studies.maps.page import save_study_page
 

@@ -11,9 +11,8 @@ from laglab.errors import PlaceError
 from laglab.export.csv_files import write_csv
 from laglab.export.tables import Tables, tables
 from laglab.extras import BAGS, MATLAB, PARQUET, Need, require
+from laglab.files import file_place, folder_place, whole_file, write_whole
 from laglab.results.run import Run
-from laglab.results.whole import whole_file
-from laglab.results.writable import file_place, folder_place
 
 FormatName = Literal["csv", "parquet", "mat", "mcap", "ros2bag"]
 BAG = "run.mcap"
@@ -95,8 +94,7 @@ def _write_bag(run: Run, folder: Path) -> None:
 
     with whole_file(folder / BAG) as file:
         written = write_mcap(run, file)
-    with whole_file(folder / METADATA) as file:
-        file.write(metadata(written, BAG).encode())
+    write_whole(folder / METADATA, metadata(written, BAG))
 
 
 FORMATS: dict[FormatName, Format] = {

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from laglab.files import write_whole
 from laglab.link.errors import LinkFileError
-from laglab.results.whole import whole_file
 from laglab_gateway import LONGEST_EXTRA, MOST_TICKS, LinkRow, TimelineError, read_link_log
 
 if TYPE_CHECKING:
@@ -104,8 +104,7 @@ def write_link_log(measured: MeasuredLink, path: Path) -> None:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(LinkRow._fields)
     writer.writerows(rows_of(measured))
-    with whole_file(path) as file:
-        file.write(text.getvalue().encode())
+    write_whole(path, text.getvalue())
 
 
 def read_measured(path: Path, interval: float, fixed: tuple[int, int] = (0, 0)) -> MeasuredLink:

@@ -4,10 +4,10 @@ import re
 from pathlib import Path
 
 from laglab.errors import PlaceError
+from laglab.files import folder_place
 from laglab.results.figures import FIGURE_FILE
 from laglab.results.run import SCENARIO_FILE
 from laglab.results.summary import SUMMARY_FILE
-from laglab.results.writable import folder_place
 from laglab.scenario import Scenario
 from laglab_gateway import ROWS, TLOG_FILE, TRACE_FILE
 

@@ -7,10 +7,10 @@ from urllib.parse import quote
 import numpy as np
 from numpy.typing import NDArray
 
+from laglab.files import whole_file
 from laglab.results.columns import Lines, csv_pieces, joined, places
 from laglab.results.numbers import AXES, RmsError, deviation
 from laglab.results.summary import Errors
-from laglab.results.whole import whole_file
 from laglab.runs.station_side import shadow_config
 from laglab.scenario import Scenario
 from laglab_control import PluginFailedError

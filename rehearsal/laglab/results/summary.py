@@ -7,7 +7,7 @@ import msgspec
 from msgspec import Struct
 
 from laglab.errors import NoRunError
-from laglab.results.whole import whole_file
+from laglab.files import json_of, write_whole
 from laglab_gateway import TLOG_FILE, LinkReport, TimingReport
 from laglab_station import StationReport
 
@@ -90,8 +90,7 @@ class Summary(Struct, frozen=True, kw_only=True):
 
 def write_summary(summary: Summary, directory: Path) -> None:
     """Keep the summary beside the trace. Raises ResultsError."""
-    with whole_file(directory / SUMMARY_FILE) as file:
-        file.write(msgspec.json.format(msgspec.json.encode(summary), indent=2) + b"\n")
+    write_whole(directory / SUMMARY_FILE, json_of(summary))
 
 
 def read_summary(directory: Path) -> Summary:

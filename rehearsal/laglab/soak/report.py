@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from datetime import datetime
 from itertools import chain
 
-import msgspec
 from rich.table import Table
 
 from laglab.bench.result import Machine
@@ -30,10 +29,6 @@ class Report:
     seconds: float
     machine: Machine
     tally: Tally
-
-    def to_json(self) -> str:
-        """For people too: indented."""
-        return msgspec.json.format(msgspec.json.encode(self), indent=2).decode() + "\n"
 
     def to_markdown(self) -> str:
         """A section of a page."""

@@ -8,10 +8,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 from time import monotonic
 
-import msgspec
-
 from laglab.bench import Machine, this_machine
-from laglab.results.whole import whole_file
+from laglab.files import json_of, write_whole
 from laglab.soak.draw import draw, generator
 from laglab.soak.expectations import failures
 from laglab.soak.play import play
@@ -78,9 +76,8 @@ class Soak:
     def write(self) -> None:
         """The report, both ways. Raises ResultsError."""
         report = self.report()
-        for name, text in ((JSON_FILE, report.to_json()), (MARKDOWN_FILE, report.to_markdown())):
-            with whole_file(self.folder / name) as file:
-                file.write(text.encode())
+        for name, text in ((JSON_FILE, json_of(report)), (MARKDOWN_FILE, report.to_markdown())):
+            write_whole(self.folder / name, text)
 
 
 def repeated(seed: int, number: int) -> str:
@@ -89,9 +86,7 @@ def repeated(seed: int, number: int) -> str:
 
 
 def _keep(played: Played, failed: Failures, place: Path) -> None:
-    with whole_file(place / TURN_FILE) as file:
-        record = msgspec.json.encode({"played": played, "failures": failed})
-        file.write(msgspec.json.format(record, indent=2) + b"\n")
+    write_whole(place / TURN_FILE, json_of({"played": played, "failures": failed}))
 
 
 @contextmanager

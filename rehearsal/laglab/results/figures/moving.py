@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab.errors import PlaceError
+from laglab.files import file_place, write_whole
 from laglab.results.figures.overlaid import labels
 from laglab.results.figures.panels import COMPONENTS, around, marked
 from laglab.results.figures.plane import fit, mark_ends
 from laglab.results.figures.shown import Shown, shown
 from laglab.results.figures.style import BLACK, BLUE, GREY, PALE, legend, line, printed, sheet
-from laglab.results.whole import whole_file
-from laglab.results.writable import file_place
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -62,8 +61,7 @@ def save_animation(runs: Sequence[Run], path: Path) -> None:
         beside = path.with_name(f".{path.name}.new.gif")
         try:
             movie.save(str(beside), writer=writer, dpi=DOTS_PER_INCH)
-            with whole_file(path) as file:
-                file.write(beside.read_bytes())
+            write_whole(path, beside.read_bytes())
         finally:
             beside.unlink(missing_ok=True)
 

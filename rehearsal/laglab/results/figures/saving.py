@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from laglab.errors import PlaceError
+from laglab.files import file_place, whole_file
 from laglab.results.figures.style import printed, sheet
-from laglab.results.whole import whole_file
-from laglab.results.writable import file_place
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

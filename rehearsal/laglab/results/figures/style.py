@@ -60,8 +60,10 @@ PRINT = {
 """matplotlib's settings; publishers want fonts of type 42, outlines that can be searched."""
 
 
-ENTRY = 0.5
-"""[inch] About the width of a name in a legend."""
+ENTRY, WIDE = 0.5, 1.4
+"""[inch] About the width of a name in a legend, and of one of the longest."""
+LONGEST = 26
+"""Letters of a name."""
 
 
 class Line(NamedTuple):
@@ -105,15 +107,23 @@ def sheet(width: float, height: float) -> Figure:
     return Picture(figsize=(width, height), layout="constrained")
 
 
+def short(name: str) -> str:
+    """As a figure has room for: of a longer one the end, for that of module:Class is the class."""
+    return name if len(name) <= LONGEST else f"…{name[1 - LONGEST :]}"
+
+
 def legend(axes: Axes) -> None:
     """Above the panel, where it hides nothing: of what has a name, if anything has."""
+    handles, names = axes.get_legend_handles_labels()
     width = axes.get_position().width * axes.figure.get_figure(root=True).get_figwidth()
-    columns = max(2, int(width / ENTRY))
-    if axes.get_legend_handles_labels()[1]:
+    wide = max(map(len, names), default=0) > LONGEST
+    if names:
         axes.legend(
+            handles,
+            list(map(short, names)),
             loc="lower left",
             bbox_to_anchor=(0.0, 1.0),
-            ncols=columns,
+            ncols=max(1, int(width / WIDE)) if wide else max(2, int(width / ENTRY)),
             frameon=False,
             borderaxespad=0.1,
             columnspacing=1.0,

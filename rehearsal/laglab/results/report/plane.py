@@ -3,16 +3,8 @@
 from bokeh.models import DataRange1d, HoverTool
 from bokeh.plotting import figure
 
-from laglab.results.report.plots import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    RED,
-    dressed,
-    heading,
-    legend_above,
-)
+from laglab.results.figures.style import BLUE, GREEN, RED
+from laglab.results.report.plots import BLACK, GREY, dressed, heading, legend_above
 from laglab.results.report.sources import Sources
 from laglab.scenario import Scenario, Target
 

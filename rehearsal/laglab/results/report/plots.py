@@ -17,21 +17,15 @@ from bokeh.models.annotations import BoxAnnotation, Legend, Span, Title
 from bokeh.models.renderers import GlyphRenderer
 from bokeh.plotting import figure
 
+from laglab.results.figures.style import BLUE, GREEN, ORANGE, RED, SKY
 from laglab.results.link_view import Span as Time
 from laglab.results.report.sources import Sources
 from laglab.results.report.tables import LANES
 from laglab.scenario import Scenario
 
-BLACK, BLUE, RED, GREEN, GREY, PURPLE = (
-    "#222222",
-    "#0072B2",
-    "#D55E00",
-    "#009E73",
-    "#8c8c8c",
-    "#9c4a86",
-)
-OTHERS = (PURPLE, GREEN, "#E69F00", "#56B4E9")
-"""Colours that the colour-blind can tell apart (M. Okabe and K. Ito, 2008)."""
+BLACK, GREY, PURPLE = "#222222", "#8c8c8c", "#9c4a86"
+"""On a screen; the other colours are those of print."""
+OTHERS = (PURPLE, GREEN, ORANGE, SKY)
 DASHES = ("dashed", "dotdash", "dotted", "dashdot")
 CAUSES = {
     "lost": ("x", RED),
@@ -39,7 +33,7 @@ CAUSES = {
     "outage": ("circle", GREY),
     "corrupted": ("triangle", GREEN),
     "queue-full": ("inverted_triangle", BLUE),
-    "late": ("diamond", "#E69F00"),
+    "late": ("diamond", ORANGE),
 }
 """Of a lost frame: its marker and colour."""
 TOOLS = "xpan,box_zoom,xwheel_zoom,reset,save"

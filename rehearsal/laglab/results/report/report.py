@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from laglab.files import write_whole
 from laglab.results.figures import labels, title
 from laglab.results.link_view import link_view
 from laglab.results.numbers import is_measured
@@ -11,7 +12,6 @@ from laglab.results.report.reading import tables_of
 from laglab.results.run import Run
 from laglab.results.summary import Summary
 from laglab.results.table import summary_rows, warnings
-from laglab.results.whole import whole_file
 
 MOST_ROWS = 12_000
 """Ticks, of all runs together: what a file of 4 MB has room for beside bokeh."""
@@ -36,8 +36,7 @@ def report_html(runs: Sequence[Run]) -> str:
 def save_report(runs: Sequence[Run], path: Path) -> None:
     """The same as a file. Raises: ResultsError, TraceError."""
     text = report_html(runs)
-    with whole_file(path) as file:
-        file.write(text.encode())
+    write_whole(path, text)
 
 
 def _panel(run: Run, name: str, most: int) -> Panel:

@@ -237,6 +237,11 @@ class PlantTable(Table):
         return self.fmu is not None or self.kind in set(SHIPPED) - {"robot"}
 
     @property
+    def ships(self) -> bool:
+        """Whether it is one of ours."""
+        return self.fmu is None and self.kind in SHIPPED
+
+    @property
     def has_fleet(self) -> bool:
         """Whether many of it can be stepped at once."""
         return self.fmu is None and self.kind == "robot"

@@ -11,7 +11,7 @@ from rich.table import Table
 
 from laglab.results.figures import INCHES, Width, legend, line, printed, sheet
 from laglab.results.figures.panels import marked
-from laglab.results.figures.style import BLUE, GREY, PALE
+from laglab.results.figures.style import BLUE, GREY, PALE, short
 from laglab.results.numbers import mean_of_known
 from laglab.scenario import Scenario
 from laglab.studies.consistency.judging import CONFIDENCE, DEGREES, Average, Verdict
@@ -77,7 +77,7 @@ def draw_consistency(
         for row, verdict in zip(panels, verdicts, strict=True):
             for axes, average in zip(row, _averages(verdict).values(), strict=True):
                 _draw_average(axes, time, average, verdict.bounds)
-            row[0].set_ylabel(verdict.estimator)
+            row[0].set_ylabel(short(verdict.estimator))
         for axes, name in zip(panels[0], _averages(verdicts[0]), strict=True):
             axes.set_title(name)
         for i, (axes, name) in enumerate(zip(below.subplots(1, 3), AXES, strict=True)):

@@ -13,6 +13,7 @@ from bokeh.plotting import figure
 from bokeh.transform import transform
 from markupsafe import Markup
 
+from laglab.files import write_whole
 from laglab.results.report.page import (
     HERE,
     INSIDE,
@@ -23,7 +24,6 @@ from laglab.results.report.page import (
     text_of,
 )
 from laglab.results.report.plots import dressed, heading
-from laglab.results.whole import whole_file
 from laglab.studies.maps.drawing import ALWAYS, MEASURES
 from laglab.studies.maps.grid import Field, Sorted, fields, sorted_into
 from laglab.studies.maps.labels import in_cell, key_label, panel_label, value_label
@@ -45,8 +45,7 @@ def save_study_page(study: Study, folder: Path, lines: Sequence[str], path: Path
 
     Raises: ResultsError, StudyError, when there is nothing to draw along.
     """
-    with whole_file(path) as file:
-        file.write(_html(study, read_runs(folder), lines).encode())
+    write_whole(path, _html(study, read_runs(folder), lines))
 
 
 def _html(study: Study, runs: StudyRuns, lines: Sequence[str]) -> str:

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from laglab.results.whole import whole_file
-from laglab.results.writable import folder_place
+from laglab.files import folder_place, write_whole
 from laglab.studies.reproduce.claim import Finding
 from laglab.studies.reproduce.entry import entries
 from laglab.studies.reproduce.markdown import markdown
@@ -28,5 +27,4 @@ def write_report(findings: Sequence[Finding], folder: Path) -> tuple[Path, Path]
 
 
 def _write(path: Path, content: bytes) -> None:
-    with whole_file(path) as file:
-        file.write(content)
+    write_whole(path, content)

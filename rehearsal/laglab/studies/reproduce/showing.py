@@ -19,12 +19,7 @@ if TYPE_CHECKING:
 
 MOST_WIDTH, MOST_DENSITY = 850, 100
 """[dots], [dots per inch] Enough on a screen, and small in a repository."""
-N, M, KIND, P_0 = (
-    "link.command_delay",
-    "link.measurement_delay",
-    "estimator.kind",
-    "estimator.initial_covariance",
-)
+N, M, P_0 = "link.command_delay", "link.measurement_delay", "estimator.initial_covariance"
 WITHIN = 5.0
 """[m] Starts that are drawn are within this distance of the goal."""
 

@@ -15,8 +15,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from laglab.errors import NoRunError
-from laglab.results.whole import BESIDE, whole_file
-from laglab.results.writable import folder_place
+from laglab.files import BESIDE, folder_place, write_whole
 from laglab.studies.sweep.cell import Cell
 from laglab.studies.sweep.compute import DESCRIPTION
 from laglab.studies.sweep.loading import study_of, to_toml
@@ -43,10 +42,9 @@ class Folder:
             with suppress(OSError):
                 if time.time() - half.stat().st_mtime > ABANDONED:
                     half.unlink()
-        text = to_toml(study, study.origin).encode()
-        if not (folder._study.is_file() and folder._study.read_bytes() == text):
-            with whole_file(folder._study, lasting=True) as file:
-                file.write(text)
+        text = to_toml(study, study.origin)
+        if not (folder._study.is_file() and folder._study.read_bytes() == text.encode()):
+            write_whole(folder._study, text, lasting=True)
         return folder
 
     @property
@@ -77,8 +75,7 @@ class Folder:
 
     def keep(self, cell: Cell, content: bytes) -> None:
         """For good. Raises ResultsError."""
-        with whole_file(self.file(cell), lasting=True) as file:
-            file.write(content)
+        write_whole(self.file(cell), content, lasting=True)
 
     def strangers(self, cells: Iterable[Cell]) -> list[Path]:
         """The files that are of none of these cells."""

@@ -1,0 +1,95 @@
+"""Files that we write: where somebody wants them, and whole or not at all."""
+
+import os
+import secrets
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import BinaryIO
+
+import msgspec
+
+from laglab.errors import PlaceError, ResultsError
+
+BESIDE = ".*.new"
+"""What is there of a file while it is being written; stays when we are killed at that."""
+
+
+def folder_place(named: str, path: Path) -> Path:
+    """The folder, made where it is not there; files can be made in it. Raises PlaceError.
+
+    `named` is how the command line calls it.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=path).close()
+    except (FileExistsError, NotADirectoryError):
+        raise PlaceError(f"{named} {path}: that is a file: results go into a folder") from None
+    except OSError as error:
+        raise PlaceError(f"{named} {path}: cannot write there: {error.strerror}") from error
+    return path
+
+
+def file_place(named: str, path: Path) -> Path:
+    """The file, which can be written; what it holds is still there. Raises PlaceError."""
+    try:
+        there = path.exists() or path.is_symlink()
+        if path.is_dir():
+            raise PlaceError(f"{named} {path}: that is a folder: name a file")
+        if path.is_file() or not there:  # to open a pipe has consequences
+            path.open("ab").close()
+        if not there:
+            path.unlink()
+    except OSError as error:
+        raise PlaceError(f"{named} {path}: cannot write there: {error.strerror}") from error
+    return path
+
+
+@contextmanager
+def whole_file(path: Path, lasting: bool = False) -> Iterator[BinaryIO]:
+    """To write into; it takes the place of what was there when all is written, and not before.
+
+    `lasting`: even when the machine then loses its power. Raises: ResultsError.
+    """
+    own = f".{os.getpid()}-{secrets.token_hex(4)}.new"
+    beside = path.with_name(own) if path.is_file() or not path.exists() else path
+    try:
+        with beside.open("wb") as file:
+            yield file
+            if lasting:
+                file.flush()
+                os.fsync(file.fileno())
+        if beside is not path:
+            beside.replace(path)
+            if lasting:
+                _sync_folder(path.parent)
+    except BaseException as error:
+        if beside is not path:
+            with suppress(OSError):
+                beside.unlink(missing_ok=True)
+        if isinstance(error, OSError):
+            problem = error.strerror or error
+            raise ResultsError(f"cannot write {path}: {problem}") from error
+        raise
+
+
+def write_whole(path: Path, content: str | bytes, lasting: bool = False) -> None:
+    """All of it at once. Raises: ResultsError."""
+    with whole_file(path, lasting) as file:
+        file.write(content.encode() if isinstance(content, str) else content)
+
+
+def json_of(value: object) -> str:
+    """For people too: indented."""
+    return msgspec.json.format(msgspec.json.encode(value), indent=2).decode() + "\n"
+
+
+def _sync_folder(folder: Path) -> None:
+    """So that the name lasts, too; not every system has it for folders."""
+    with suppress(OSError):
+        number = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(number)
+        finally:
+            os.close(number)
