@@ -6,13 +6,7 @@ from typing import Any
 
 import pytest
 
-from laglab_protocol import (
-    STATION_COMPONENT,
-    STATION_SYSTEM,
-    Receiver,
-    Sender,
-    open_endpoint,
-)
+from laglab_protocol import STATION_COMPONENT, STATION_SYSTEM, Receiver, Sender, open_endpoint
 
 from .line import SPEED, Line
 

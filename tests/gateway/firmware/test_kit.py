@@ -9,15 +9,7 @@ from typing import Any
 import pytest
 
 from laglab_conformance import Mark, conform
-from laglab_protocol import (
-    NO_PROBE,
-    PROBE_FILLER,
-    PROBE_LAGS,
-    Message,
-    Probe,
-    Sender,
-    make_key,
-)
+from laglab_protocol import NO_PROBE, PROBE_FILLER, PROBE_LAGS, Message, Probe, Sender, make_key
 
 from .line import PERIOD, Line
 

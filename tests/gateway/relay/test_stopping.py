@@ -2,16 +2,8 @@
 
 import pytest
 
-from laglab_gateway import (
-    Safety,
-)
-from laglab_protocol import (
-    Command,
-    CommandAck,
-    CommandLong,
-    Message,
-    Planned,
-)
+from laglab_gateway import Safety
+from laglab_protocol import Command, CommandAck, CommandLong, Message, Planned
 from laglab_protocol.dialect.generated import laglab as mavlink
 
 from .rig import Rig, relay
