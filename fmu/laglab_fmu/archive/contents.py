@@ -22,7 +22,7 @@ HEADERS = {
     3: ("fmi3Functions.h", "fmi3FunctionTypes.h", "fmi3PlatformTypes.h"),
 }
 TERMINALS = (
-    ("wheels", "Commands to the wheel drives", Role.INPUT),
+    ("commands", "What the robot is told", Role.INPUT),
     ("pose", "Where the robot is", Role.STATE),
     ("sensor", "What the sensor says of the pose", Role.SAMPLED),
     ("body", "Speeds of the body", Role.ALGEBRAIC),
@@ -98,13 +98,17 @@ def _build_description(identifier: str, sources: list[str]) -> bytes:
 
 
 def _documentation(model: Model) -> dict[str, bytes]:
-    page = Template((own_files("content") / "index.html").read_text(encoding="utf-8"))
+    content = own_files("content")
+    page = Template((content / "index.html").read_text(encoding="utf-8"))
+    motion = (content / "robots" / f"{model.folder}.html").read_text(encoding="utf-8")
     rows = "\n".join(
         _row(variable) for variable in model.variables if variable.role is not Role.TIME
     )
     return {
-        "documentation/index.html": page.substitute(rows=rows).encode(),
-        "documentation/licenses/license.txt": (own_files("content") / "license.txt").read_bytes(),
+        "documentation/index.html": page.substitute(
+            name=model.name, description=model.description, motion=motion.rstrip(), rows=rows
+        ).encode(),
+        "documentation/licenses/license.txt": (content / "license.txt").read_bytes(),
         "documentation/licenses/fmi-headers.txt": _header_licence(),
     }
 
