@@ -75,7 +75,6 @@ from laglab_protocol.messages.loop import (
     Recall,
     Settings,
     Tick,
-    message_type,
 )
 from laglab_protocol.messages.missions import (
     MissionAck,
@@ -91,6 +90,7 @@ from laglab_protocol.messages.missions import (
     MissionSetCurrent,
     MissionWritePartialList,
 )
+from laglab_protocol.messages.names import message_type
 from laglab_protocol.messages.standard import (
     MAV_SEVERITY_EMERGENCY,
     MAV_SEVERITY_ERROR,

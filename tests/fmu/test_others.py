@@ -1,6 +1,7 @@
 """The other robots that ship: how they move, and that they are FMUs as the first one is."""
 
 import math
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -12,7 +13,7 @@ from fmpy.fmi3 import FMU3Slave
 from fmpy.validation import validate_fmu
 
 from laglab_fmu.foreign import FmuFile, ForeignRobot, Value, Wiring
-from laglab_fmu.models import MODELS, Kind, Role, model_of
+from laglab_fmu.models import MODELS, Kind, Model, Role, model_of
 
 TS = 0.01
 OTHERS = ("Car2", "Car3", "Omni2", "Omni3")
@@ -52,6 +53,16 @@ def test_the_manipulation_toolbox_finds_no_error(fmus: dict[str, Path]) -> None:
         check=True,
     )
     assert "seems to be compliant" in done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("model", MODELS, ids=lambda model: model.name)
+def test_its_documentation_is_its_own(extracted: dict[str, Path], model: Model) -> None:
+    page = (extracted[f"{model.name}3"] / "documentation" / "index.html").read_text()
+    assert f"<title>{model.name}</title>" in page
+    assert model.description in page
+    assert ("Fleet3.fmu" in page) == model.has_fleet
+    named = set(re.findall(r"<code>(\w+_\w+)</code>", page))
+    assert named <= {variable.name for variable in model.variables}
 
 
 def test_all_that_ship_are_built(fmus: dict[str, Path]) -> None:

@@ -15,7 +15,7 @@ from laglab_protocol.dialect.mavgen import (
     generate,
     generate_into,
 )
-from laglab_protocol.messages.loop import WRITTEN_OUT
+from laglab_protocol.messages.names import WRITTEN_OUT
 
 PYTHON_TYPE = {"float": float, "double": float, "char": bytes}
 

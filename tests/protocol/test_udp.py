@@ -6,10 +6,7 @@ from contextlib import ExitStack
 
 import pytest
 
-from laglab_protocol import (
-    Endpoint,
-    open_endpoint,
-)
+from laglab_protocol import Endpoint, open_endpoint
 
 WAIT = 2.0
 

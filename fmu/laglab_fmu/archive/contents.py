@@ -22,7 +22,7 @@ HEADERS = {
     3: ("fmi3Functions.h", "fmi3FunctionTypes.h", "fmi3PlatformTypes.h"),
 }
 TERMINALS = (
-    ("wheels", "Commands to the wheel drives", Role.INPUT),
+    ("commands", "What the robot is told", Role.INPUT),
     ("pose", "Where the robot is", Role.STATE),
     ("sensor", "What the sensor says of the pose", Role.SAMPLED),
     ("body", "Speeds of the body", Role.ALGEBRAIC),
@@ -46,9 +46,9 @@ def own_files(folder: str) -> Path:
 
 def c_files(model: Model = ROBOT) -> dict[str, bytes]:
     """The C sources of both versions by name, the generated header included."""
-    folder = own_files("src")
-    paths = [*folder.glob("*.[ch]"), *(folder / "robots" / model.folder).glob("*.[ch]")]
-    files = {path.name: path.read_bytes() for path in sorted(paths)}
+    src = own_files("src")
+    folders = src, src / "faces", src / "robots" / model.folder
+    files = {path.name: path.read_bytes() for each in folders for path in each.glob("*.[ch]")}
     tokens = dict(zip(("TOKEN_2", "TOKEN_3", "TOKEN_FLEET"), map(token, model.fmus), strict=False))
     tokens.setdefault("TOKEN_FLEET", f"{{no fleet of {model.name}}}")
     return files | {"variables.h": variables_header(model.variables, tokens).encode()}
@@ -98,13 +98,17 @@ def _build_description(identifier: str, sources: list[str]) -> bytes:
 
 
 def _documentation(model: Model) -> dict[str, bytes]:
-    page = Template((own_files("content") / "index.html").read_text(encoding="utf-8"))
+    content = own_files("content")
+    page = Template((content / "index.html").read_text(encoding="utf-8"))
+    motion = (content / "robots" / f"{model.folder}.html").read_text(encoding="utf-8")
     rows = "\n".join(
         _row(variable) for variable in model.variables if variable.role is not Role.TIME
     )
     return {
-        "documentation/index.html": page.substitute(rows=rows).encode(),
-        "documentation/licenses/license.txt": (own_files("content") / "license.txt").read_bytes(),
+        "documentation/index.html": page.substitute(
+            name=model.name, description=model.description, motion=motion.rstrip(), rows=rows
+        ).encode(),
+        "documentation/licenses/license.txt": (content / "license.txt").read_bytes(),
         "documentation/licenses/fmi-headers.txt": _header_licence(),
     }
 

@@ -21,7 +21,7 @@ class Model:
     name: str
     """Of its FMUs, whose model identifier it is, too."""
     folder: str
-    """Of its C files, in `src/robots`."""
+    """Of its C files, in `src/robots`; its motion for readers is in `content/robots`."""
     description: str
     variables: Sequence[Variable]
     has_fleet: bool = False

@@ -1,8 +1,6 @@
 """What a ground station expects of a rover: heartbeat, parameters, commands, telemetry."""
 
 from laglab_gateway.services.asker import Asker, Askers
-from laglab_gateway.services.commands import Commands
-from laglab_gateway.services.geography import Origin
 from laglab_gateway.services.pace import Pace
 from laglab_gateway.services.parameters import (
     Parameter,
@@ -10,16 +8,15 @@ from laglab_gateway.services.parameters import (
     safety_now,
     standard_parameters,
 )
+from laglab_gateway.services.reports import Origin, heartbeat
 from laglab_gateway.services.service import Services
 from laglab_gateway.services.state import Arming, RobotState
-from laglab_gateway.services.telemetry import heartbeat
 from laglab_gateway.services.timesync import Timesyncing
 
 __all__ = [
     "Arming",
     "Asker",
     "Askers",
-    "Commands",
     "Origin",
     "Pace",
     "Parameter",

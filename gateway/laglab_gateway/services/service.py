@@ -3,11 +3,10 @@
 from laglab_gateway.services.absent import about_absent
 from laglab_gateway.services.asker import Asker
 from laglab_gateway.services.commands import Commands
-from laglab_gateway.services.geography import SOMEWHERE, Origin
 from laglab_gateway.services.missions import about_missions
 from laglab_gateway.services.pace import Pace
 from laglab_gateway.services.parameters import Parameters
-from laglab_gateway.services.reports import REQUESTS, Seen, report
+from laglab_gateway.services.reports import REQUESTS, SOMEWHERE, Origin, Seen, report
 from laglab_gateway.services.state import Arming, RobotState
 from laglab_gateway.services.timesync import Timesyncing
 from laglab_protocol import ROBOT_COMPONENT, ROBOT_SYSTEM, Frame, Message, Ping, Timesync

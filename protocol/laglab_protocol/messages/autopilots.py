@@ -136,22 +136,3 @@ class ParamExtAck(Message, frozen=True):
     param_value: bytes
     param_type: int
     param_result: int
-
-
-AUTOPILOTS: dict[str, type[Message]] = {
-    "SET_MODE": SetMode,
-    "EXTENDED_SYS_STATE": ExtendedSysState,
-    "AUTOPILOT_VERSION_REQUEST": AutopilotVersionRequest,
-    "REQUEST_DATA_STREAM": RequestDataStream,
-    "DATA_STREAM": DataStream,
-    "FILE_TRANSFER_PROTOCOL": FileTransferProtocol,
-    "LOG_REQUEST_LIST": LogRequestList,
-    "LOG_ENTRY": LogEntry,
-    "LOG_REQUEST_DATA": LogRequestData,
-    "LOG_DATA": LogData,
-    "PARAM_EXT_REQUEST_READ": ParamExtRequestRead,
-    "PARAM_EXT_REQUEST_LIST": ParamExtRequestList,
-    "PARAM_EXT_VALUE": ParamExtValue,
-    "PARAM_EXT_SET": ParamExtSet,
-    "PARAM_EXT_ACK": ParamExtAck,
-}

@@ -92,13 +92,3 @@ class SetHomePosition(Message, frozen=True):
     approach_z: float
     target_system: int
     time_usec: int = 0
-
-
-GEOGRAPHIC: dict[str, type[Message]] = {
-    "GLOBAL_POSITION_INT": GlobalPositionInt,
-    "GPS_RAW_INT": GpsRawInt,
-    "GPS_GLOBAL_ORIGIN": GpsGlobalOrigin,
-    "SET_GPS_GLOBAL_ORIGIN": SetGpsGlobalOrigin,
-    "HOME_POSITION": HomePosition,
-    "SET_HOME_POSITION": SetHomePosition,
-}

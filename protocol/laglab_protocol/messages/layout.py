@@ -9,7 +9,7 @@ from typing import Any
 from laglab_protocol.dialect.generated import laglab as dialect
 from laglab_protocol.errors import DialectError
 from laglab_protocol.messages.base import Message
-from laglab_protocol.messages.loop import message_type
+from laglab_protocol.messages.names import message_type
 
 
 @dataclass(frozen=True, slots=True)

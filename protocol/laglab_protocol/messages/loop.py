@@ -1,21 +1,9 @@
-"""The messages that this project handles, named as in the XML.
-
-They are written out, so that a type checker knows their fields; every other message of the dialect
-is had by `message_type("NAME")`.
-"""
+"""The messages of our own dialect: the loop's, and those that measure its link; in wire order."""
 
 import math
 from enum import IntEnum
 
-from msgspec import defstruct
-
-from laglab_protocol.dialect.generated import laglab as dialect
-from laglab_protocol.errors import DialectError
-from laglab_protocol.messages.autopilots import AUTOPILOTS
 from laglab_protocol.messages.base import Message
-from laglab_protocol.messages.geographic import GEOGRAPHIC
-from laglab_protocol.messages.missions import MISSIONS
-from laglab_protocol.messages.standard import STANDARD
 
 NO_COMMAND = -1
 """Measurement.command_tick when no command had come into force."""
@@ -192,41 +180,3 @@ class Probe(Message, frozen=True):
     interval_us: int
     came: tuple[int, ...]
     filler: tuple[int, ...]
-
-
-WRITTEN_OUT: dict[str, type[Message]] = {
-    "LAGLAB_TICK": Tick,
-    "LAGLAB_MEASUREMENT": Measurement,
-    "LAGLAB_COMMAND": Command,
-    "LAGLAB_ESTIMATE": Estimate,
-    "LAGLAB_END": End,
-    "LAGLAB_SETTINGS": Settings,
-    "LAGLAB_RECALL": Recall,
-    "LAGLAB_APPLIED": Applied,
-    "LAGLAB_PLAN": Plan,
-    "LAGLAB_PROBE": Probe,
-    **STANDARD,
-    **GEOGRAPHIC,
-    **MISSIONS,
-    **AUTOPILOTS,
-}
-
-_IDS: dict[str, int] = {made.msgname: number for number, made in dialect.mavlink_map.items()}
-_types = dict(WRITTEN_OUT)
-
-
-def message_id(name: str) -> int:
-    """The id of the message with this name. Raises DialectError when the dialect has none."""
-    if name not in _IDS:
-        raise DialectError(f"no message {name!r} in the dialect: write it as the XML does")
-    return _IDS[name]
-
-
-def message_type(name: str) -> type[Message]:
-    """The class of any message of the dialect, by its name in the XML."""
-    if name not in _types:
-        generated = dialect.mavlink_map[message_id(name)]
-        made = defstruct(name, generated.ordered_fieldnames, bases=(Message,))
-        assert issubclass(made, Message)
-        _types[name] = made
-    return _types[name]

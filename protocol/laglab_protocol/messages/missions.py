@@ -134,19 +134,3 @@ class MissionAck(Message, frozen=True):
     target_component: int
     type: int
     mission_type: int = 0
-
-
-MISSIONS: dict[str, type[Message]] = {
-    "MISSION_REQUEST_LIST": MissionRequestList,
-    "MISSION_COUNT": MissionCount,
-    "MISSION_REQUEST": MissionRequest,
-    "MISSION_REQUEST_INT": MissionRequestInt,
-    "MISSION_REQUEST_PARTIAL_LIST": MissionRequestPartialList,
-    "MISSION_WRITE_PARTIAL_LIST": MissionWritePartialList,
-    "MISSION_ITEM": MissionItem,
-    "MISSION_ITEM_INT": MissionItemInt,
-    "MISSION_CLEAR_ALL": MissionClearAll,
-    "MISSION_SET_CURRENT": MissionSetCurrent,
-    "MISSION_CURRENT": MissionCurrent,
-    "MISSION_ACK": MissionAck,
-}

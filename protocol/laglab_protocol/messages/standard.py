@@ -238,25 +238,3 @@ class Statustext(Message, frozen=True):
     text: bytes
     id: int = 0
     chunk_seq: int = 0
-
-
-STANDARD: dict[str, type[Message]] = {
-    "HEARTBEAT": Heartbeat,
-    "SYS_STATUS": SysStatus,
-    "SYSTEM_TIME": SystemTime,
-    "PING": Ping,
-    "TIMESYNC": Timesync,
-    "ATTITUDE": Attitude,
-    "LOCAL_POSITION_NED": LocalPositionNed,
-    "ODOMETRY": Odometry,
-    "PARAM_REQUEST_READ": ParamRequestRead,
-    "PARAM_REQUEST_LIST": ParamRequestList,
-    "PARAM_SET": ParamSet,
-    "PARAM_VALUE": ParamValue,
-    "PARAM_ERROR": ParamError,
-    "COMMAND_LONG": CommandLong,
-    "COMMAND_INT": CommandInt,
-    "COMMAND_ACK": CommandAck,
-    "AUTOPILOT_VERSION": AutopilotVersion,
-    "STATUSTEXT": Statustext,
-}

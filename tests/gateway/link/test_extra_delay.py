@@ -5,12 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from laglab_gateway import (
-    ConfigError,
-    ExtraDelay,
-    Impairments,
-    RandomFates,
-)
+from laglab_gateway import ConfigError, ExtraDelay, Impairments, RandomFates
 
 TS = 0.01
 

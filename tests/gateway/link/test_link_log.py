@@ -4,12 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from laglab_gateway import (
-    LinkRow,
-    RecordedFates,
-    TimelineError,
-    read_link_log,
-)
+from laglab_gateway import LinkRow, RecordedFates, TimelineError, read_link_log
 from laglab_gateway.link.fates import Fate, FateKind
 
 TS = 0.01

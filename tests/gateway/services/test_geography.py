@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from laglab_gateway import ConfigError, Origin, Safety, Services, standard_parameters
 from laglab_gateway.services import RobotState
-from laglab_gateway.services.geography import NO_POSITION
+from laglab_gateway.services.reports.geography import NO_POSITION
 from laglab_protocol import (
     GlobalPositionInt,
     GpsGlobalOrigin,

@@ -8,9 +8,9 @@ import pytest
 import laglab
 from laglab_gateway import Origin, Services
 from laglab_gateway.services import RobotState
-from laglab_gateway.services.frames import to_ned
-from laglab_gateway.services.identity import packed_version
 from laglab_gateway.services.reports import REPORTS, Seen
+from laglab_gateway.services.reports.frames import to_ned
+from laglab_gateway.services.reports.identity import packed_version
 from laglab_protocol import (
     AutopilotVersion,
     AutopilotVersionRequest,

@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
-from laglab_gateway.services.frames import to_ned
+from laglab_gateway.services.reports.frames import to_ned
 from laglab_gateway.services.state import RobotState
 from laglab_gateway.values import Number, checked, described
 from laglab_protocol import GlobalPositionInt, GpsGlobalOrigin, GpsRawInt, HomePosition

@@ -2,8 +2,8 @@
 
 import math
 
-from laglab_gateway.services.frames import to_ned
 from laglab_gateway.services.modes import ARMED, CUSTOM_MODE, MODE
+from laglab_gateway.services.reports.frames import to_ned
 from laglab_gateway.services.state import Arming, RobotState
 from laglab_protocol import (
     Attitude,

@@ -1,6 +1,4 @@
-"""The relay's core between a robot and a station that are made of the codec alone."""
-
-from itertools import count
+"""The relay's core: the robot's ticks, the link's delays and fates, and how a run ends."""
 
 import numpy as np
 import pytest
@@ -15,123 +13,25 @@ from laglab_gateway import (
     Relay,
     Safety,
     Services,
-    TraceRow,
     standard_parameters,
 )
-from laglab_gateway.speakers import from_robot
 from laglab_protocol import (
-    NO_COMMAND,
     ROBOT_COMPONENT,
-    ROBOT_SYSTEM,
     STATION_COMPONENT,
     STATION_SYSTEM,
     Applied,
     Command,
-    CommandAck,
-    CommandLong,
     End,
     EndReason,
     Heartbeat,
-    Measurement,
-    Message,
-    Planned,
     Recall,
     Receiver,
     Sender,
     Settings,
     Tick,
-    frames_in,
 )
-from laglab_protocol.dialect.generated import laglab as mavlink
 
-TS = 0.01
-
-
-def heard(frames: list[bytes]) -> list[Message]:
-    return [frame.message for frame in Receiver().receive(b"".join(frames))]
-
-
-class Robot:
-    """Ticks; the newest command of those received is in force from its next tick on."""
-
-    def __init__(self, first: int = 0) -> None:
-        self.ticks = count(first)
-        self.sender = Sender(ROBOT_SYSTEM, ROBOT_COMPONENT)
-        self.received: list[Message] = []
-        self.in_force = (0.0, 0.0, NO_COMMAND)
-
-    def tick(self) -> bytes:
-        k = next(self.ticks)
-        v, omega, stamp = self.in_force
-        told = self._told()
-        for command in self.received:
-            if isinstance(command, Command):
-                self.in_force = (command.v, command.omega, command.tick)
-        self.received.clear()
-        sample = Measurement(float(k), -k / 2, k / 8, v, omega, k, stamp)
-        return b"".join(map(self.sender.frame, (*told, sample, Tick(k, 1 + len(told)))))
-
-    def _told(self) -> list[Message]:
-        """What it was asked by its rules: before a command that says so."""
-        before: list[Recall] = []
-        told: list[Message] = []
-        for message in self.received:
-            if isinstance(message, Recall):
-                before.append(message)
-            elif isinstance(message, Command):
-                assert message.estimates == len(before)
-                told += [Applied((0.25,) * 12, (0.5,) * 12, each.first, 12) for each in before]
-                before.clear()
-        return told
-
-
-class Rig:
-    """The robot, the relay and a station that answers each tick with v = tick / 1000."""
-
-    def __init__(self, relay: Relay, first: int = 0) -> None:
-        self.relay = relay
-        self.robot = Robot(first)
-        self.station = Sender(STATION_SYSTEM, STATION_COMPONENT)
-        self.receiver = Receiver()
-        self.rows: list[TraceRow] = []
-        self.told: list[list[Message]] = []
-
-    def feed(self, data: bytes) -> None:
-        for frame in self.receiver.receive(data):
-            if not from_robot(frame) or not self.relay.hear_robot(frame):
-                continue
-            if self.relay.under_way:
-                self.rows.append(self.relay.close_tick())
-            if self.relay.outcome is None:
-                self.told.append(heard(self.relay.open_tick()))
-
-    def say(self, *messages: Message) -> list[Message]:
-        return heard(self.relay.hear(frames_in(b"".join(map(self.station.frame, messages)))))
-
-    def forward(self) -> list[Message]:
-        forwarded = heard(self.relay.forward())
-        self.robot.received += forwarded
-        return forwarded
-
-    def run(self, ticks: int) -> None:
-        for _ in range(ticks):
-            self.feed(self.robot.tick())
-            self.forward()
-            self.say(Command(self.relay.tick / 1000, 0.0, self.relay.tick, 1, 1, 0))
-            self.forward()
-
-
-def relay(
-    n: int = 1,
-    m: int = 0,
-    last_tick: int = 10**6,
-    safety: Safety | None = None,
-    commands: RandomFates | None = None,
-) -> Relay:
-    safety = safety or Safety()
-    services = Services(standard_parameters(n, m, safety), placeable=False)
-    config = GatewayConfig(n, m, last_tick, TS, safety)
-    return Relay(config, services, {"command": commands} if commands else None)
+from .rig import TS, Rig, relay
 
 
 def fates_of(event: Event) -> RandomFates:
@@ -220,45 +120,10 @@ def test_what_the_station_missed_is_asked_of_the_robot_and_told() -> None:
     assert told[-1].v[2:5] == (0.25, 0.25, 0.25), "by the robot's own word"
 
 
-def test_why_the_robot_stops_is_said_when_it_stops_and_once() -> None:
-    rig = Rig(relay(safety=Safety(v_limit=1.0)))
-    rig.run(10)
-    for bad in (True, False, True, False):
-        rig.feed(rig.robot.tick())
-        tick = rig.relay.tick
-        rig.say(Command(5.0 if bad else 0.1, 0.0, tick, 1, 1, 0))
-        rig.forward()
-    assert rig.relay.take_notices() == [], "one command that is refused stops nothing"
-    for _ in range(120):
-        rig.feed(rig.robot.tick())
-        rig.say(Command(5.0, 0.0, rig.relay.tick, 1, 1, 0))
-        rig.forward()
-    (notice,) = rig.relay.take_notices()
-    assert notice.text == b"commands are beyond V_MAX, OMEGA_MAX: stopping"
-
-
 def test_several_ticks_in_one_piece_are_ticks_one_by_one() -> None:
     rig = Rig(relay(2, 1))
     rig.feed(rig.robot.tick() + rig.robot.tick() + rig.robot.tick())
     assert [told[-1] for told in rig.told] == [Tick(0, 0), Tick(1, 1), Tick(2, 1)]
-
-
-@pytest.mark.parametrize(
-    ("bad", "why"),
-    [
-        ((float("nan"), 0.0), "not finite"),
-        ((0.0, float("inf")), "not finite"),
-        ((3.0, 0.0), "out of limits"),
-    ],
-)
-def test_what_a_robot_must_not_get_is_refused_and_counted(
-    bad: tuple[float, float], why: str
-) -> None:
-    rig = Rig(relay(safety=Safety(v_limit=2.0)))
-    rig.feed(rig.robot.tick())
-    rig.say(Command(*bad, 0, 1, 1, 0))
-    assert rig.forward() == []
-    assert rig.relay.audit.report().refused == {why: 1}
 
 
 def test_a_command_overtaken_on_the_link_is_stale() -> None:
@@ -302,50 +167,6 @@ def test_only_the_robot_itself_is_heard() -> None:
     rig.feed(stranger.frame(Tick(0, 0)) + stranger.frame(End(0, 0)))
     assert not rig.relay.under_way
     assert rig.relay.outcome is None
-
-
-def test_an_emergency_stop_stops_a_real_robot_for_good() -> None:
-    rig = Rig(relay())
-    rig.run(5)
-    rig.say(CommandLong(1.0, *[0.0] * 6, mavlink.MAV_CMD_DO_FLIGHTTERMINATION, 1, 1, 0))
-    rig.run(5)
-    assert [row.v for row in rig.rows[-3:]] == [0.0, 0.0, 0.0]
-    (ack,) = rig.say(CommandLong(*[0.0] * 7, mavlink.MAV_CMD_LAGLAB_RESET_POSE, 1, 1, 0))
-    assert isinstance(ack, CommandAck)
-    assert ack.result == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
-    assert rig.relay.services.arming.stopped
-
-
-def planned(tick: int, length: int) -> list[Message]:
-    following = tuple((i / 1000, 0.0) for i in range(length))
-    plan = Planned(Command(1.0, 0.0, tick, 1, 1, 0, length), tick + 2, following)
-    return [*plan.frames(), plan.command]
-
-
-def test_a_plan_is_passed_on_whole_when_its_command_is_due() -> None:
-    rig = Rig(relay(n=2))
-    rig.feed(rig.robot.tick())
-    said = planned(0, 20)
-    rig.say(*said)
-    assert rig.forward() == []
-    rig.feed(rig.robot.tick())
-    assert rig.forward() == said
-    assert rig.forward() == []
-
-
-def test_a_robot_that_is_stopped_does_not_go_on_by_its_plan_though_no_command_comes() -> None:
-    rig = Rig(relay(n=2))
-    rig.feed(rig.robot.tick())
-    rig.say(*planned(0, 200))
-    rig.feed(rig.robot.tick())
-    assert len(rig.forward()) == 15
-    rig.say(CommandLong(1.0, *[0.0] * 6, mavlink.MAV_CMD_DO_FLIGHTTERMINATION, 1, 1, 0))
-    assert rig.forward() == [Command(0.0, 0.0, 1, 1, 1, 0)]
-    rig.feed(rig.robot.tick())
-    assert rig.forward() == []
-    rig.say(*planned(2, 20))
-    rig.feed(rig.robot.tick())
-    assert rig.forward() == [Command(0.0, 0.0, 2, 1, 1, 0)]
 
 
 def test_the_robot_is_greeted_and_ended_as_by_its_station() -> None:

@@ -3,9 +3,9 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-from laglab_gateway.services import geography, telemetry
-from laglab_gateway.services.geography import Origin
-from laglab_gateway.services.identity import autopilot_version
+from laglab_gateway.services.reports import geography, telemetry
+from laglab_gateway.services.reports.geography import Origin
+from laglab_gateway.services.reports.identity import autopilot_version
 from laglab_gateway.services.state import Arming, RobotState
 from laglab_protocol import AutopilotVersionRequest, Message, SetGpsGlobalOrigin, SetHomePosition
 from laglab_protocol.dialect.generated import laglab as mavlink
