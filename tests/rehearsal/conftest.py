@@ -72,7 +72,7 @@ def refused(ended: Callable[..., Ended]) -> Callable[..., str]:
 
     def call(*arguments: object, code: int = 2) -> str:
         said = ended(*arguments)
-        assert said.code == code, said
+        assert (said.code, said.out) == (code, ""), said
         (line,) = said.err.splitlines()
         assert line.startswith("laglab: ")
         return line
