@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+import laglab as lab
+
 PAGE = (Path(__file__).parents[2] / "docs" / "bring-your-own.md").read_text("utf-8")
 FILES = re.findall(r"```python\n# (\w+\.py)\n(.*?)```", PAGE, flags=re.DOTALL)
 (WAY,) = re.findall(r"```text\n(time.*?)```", PAGE, flags=re.DOTALL)
@@ -50,8 +52,9 @@ def test_each_command_does_what_it_says(folder: Path) -> None:
         assert done.stdout
 
 
-def test_the_scenario_it_shows_is_one(folder: Path) -> None:
+def test_the_scenario_it_shows_is_one(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(folder)
     (folder / "own.toml").write_text(f"duration = 0.3\n{TOML}")
-    done = laglab(folder, "run", "own.toml", "--transport", "inline", "--out", "run")
-    assert done.returncode == 0, done.stderr
-    assert "RMS error of mine:Inflated" in done.stdout
+    run = lab.run("own.toml")
+    assert run.scenario.estimator.kind == "mine:Inflated"
+    assert set(run.summary.compare) == {"mine:Inflated", "delayed-ekf"}

@@ -18,21 +18,30 @@ Start = Callable[..., "subprocess.Popen[str]"]
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.fixture
-def laglab(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
-    """``laglab ARGUMENTS`` as a user runs it, in an empty folder."""
+Laglab = Callable[..., subprocess.CompletedProcess[str]]
 
-    def call(*arguments: str) -> subprocess.CompletedProcess[str]:
+
+@pytest.fixture(scope="session")
+def laglab_in() -> Callable[[Path], Laglab]:
+    """``laglab ARGUMENTS`` as a user runs it, in that folder."""
+
+    def call(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
         return subprocess.run(
             [sys.executable, "-m", "laglab", *arguments],
-            cwd=tmp_path,
+            cwd=folder,
             capture_output=True,
             text=True,
             timeout=60,
             check=False,
         )
 
-    return call
+    return lambda folder: partial(call, folder)
+
+
+@pytest.fixture
+def laglab(tmp_path: Path, laglab_in: Callable[[Path], Laglab]) -> Laglab:
+    """The same in an empty folder."""
+    return laglab_in(tmp_path)
 
 
 class Ended(NamedTuple):
@@ -63,7 +72,7 @@ def refused(ended: Callable[..., Ended]) -> Callable[..., str]:
 
     def call(*arguments: object, code: int = 2) -> str:
         said = ended(*arguments)
-        assert said.code == code, said
+        assert (said.code, said.out) == (code, ""), said
         (line,) = said.err.splitlines()
         assert line.startswith("laglab: ")
         return line

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import laglab
-from laglab.command import main
 from laglab.results.numbers import deviation, loop_estimates
 from laglab_protocol import Statustext, read_tlog
 
@@ -46,12 +45,10 @@ def test_noise_alone_is_no_alarm() -> None:
 
 
 def test_the_alarm_is_in_table_warning_verdict_summary_figure_and_log(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, ended: Callable[..., Any]
 ) -> None:
-    with pytest.raises(SystemExit) as ended:
-        main(["run", "lab", *MOVED, "--transport", "inline", "--out", str(tmp_path / "r")])
-    assert ended.value.code == 0
-    said = capsys.readouterr()
+    said = ended("run", "lab", *MOVED, "--transport", "inline", "--out", tmp_path / "r")
+    assert said.code == 0
     summary = json.loads((tmp_path / "r" / "summary.json").read_text())
     (alarm,) = summary["station"]["alarms"]
     tick = alarm["tick"]
@@ -83,12 +80,9 @@ def test_the_papers_scenarios_have_no_guard(rehearsed: Callable[..., dict[str, A
     ],
 )
 def test_somewhere_the_robot_must_be_put(
-    event: str, problem: str, capsys: pytest.CaptureFixture[str]
+    event: str, problem: str, refused: Callable[..., str]
 ) -> None:
-    with pytest.raises(SystemExit) as ended:
-        main(["scenario", "lab", "--set", f"plant.event={event}"])
-    assert ended.value.code == 2
-    assert problem in capsys.readouterr().err
+    assert problem in refused("scenario", "lab", "--set", f"plant.event={event}")
 
 
 def test_it_is_put_down_at_the_tick_and_drives_on() -> None:
@@ -117,12 +111,9 @@ def test_where_the_claim_is_large_the_robot_is_slow() -> None:
 
 @pytest.mark.parametrize("command", ["run", "gateway"])
 def test_nobody_can_move_a_real_robot_from_here(
-    command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: Any
+    command: str, tmp_path: Path, refused: Callable[..., str], monkeypatch: Any
 ) -> None:
     monkeypatch.chdir(tmp_path)
     here = ["--endpoint", "udpin://127.0.0.1:0"] if command == "gateway" else []
-    with pytest.raises(SystemExit) as ended:
-        main([command, "lab", *MOVED, *here, "--plant", "udpout://127.0.0.1:9"])
-    assert ended.value.code == 2
-    (line,) = (each for each in capsys.readouterr().err.splitlines() if each.startswith("laglab:"))
+    line = refused(command, "lab", *MOVED, *here, "--plant", "udpout://127.0.0.1:9")
     assert "which nobody can move from here" in line

@@ -7,11 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from laglab.command import main
-
 from .studying import SHORT, SMALL
 from .test_full_disk import MOUNTED, may_mount
 
+Refused = Callable[..., str]
 Start = Callable[..., "subprocess.Popen[str]"]
 
 BASE = 'scenario = "lab"\nseeds = 2\n'
@@ -43,28 +42,17 @@ ALONE = {
 }
 
 
-def refused(arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as ended:
-        main(["sweep", *arguments])
-    errors = capsys.readouterr().err
-    assert ended.value.code == 2, errors
-    assert said in errors
-    assert len(errors.splitlines()) == 1
+@pytest.fixture(autouse=True)
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
 
 
 @pytest.mark.parametrize(
     ("text", "said"), [*((BASE + text, said) for text, said in WRONG.items()), *ALONE.items()]
 )
-def test_what_is_wrong_in_its_file_is_one_line(
-    text: str,
-    said: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_what_is_wrong_in_its_file_is_one_line(text: str, said: str, refused: Refused) -> None:
     Path("bad.toml").write_text(text)
-    refused(["bad.toml"], said, capsys)
+    assert said in refused("sweep", "bad.toml")
     assert not Path("studies").exists()
 
 
@@ -83,21 +71,16 @@ def test_what_is_wrong_in_its_file_is_one_line(
     ],
 )
 def test_what_is_asked_for_in_vain_is_one_line(
-    arguments: list[str],
-    said: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    arguments: list[str], said: str, refused: Refused
 ) -> None:
-    monkeypatch.chdir(tmp_path)
-    refused(arguments, said, capsys)
+    assert said in refused("sweep", *arguments)
 
 
 def test_without_the_extra_it_says_what_to_install(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    monkeypatch: pytest.MonkeyPatch, refused: Refused
 ) -> None:
     monkeypatch.setattr("laglab.extras.find_spec", lambda module: module != "pyarrow" or None)
-    refused(["gains"], "pip install 'laglab[study]' brings it", capsys)
+    assert "pip install 'laglab[study]' brings it" in refused("sweep", "gains")
 
 
 def test_a_disk_that_fills_up_is_one_line_and_what_was_written_is_whole(

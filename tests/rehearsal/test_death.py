@@ -21,7 +21,6 @@ from laglab.scenario import load
 from laglab_gateway import read_trace
 from laglab_protocol import EndReason, read_tlog
 
-Laglab = Callable[..., subprocess.CompletedProcess[str]]
 Start = Callable[..., "subprocess.Popen[str]"]
 ListeningPort = Callable[["subprocess.Popen[str]"], str]
 NOTICED_WITHIN = 5.0
@@ -181,17 +180,16 @@ def test_a_controller_started_again_takes_over(
 
 @pytest.mark.parametrize("transport", ["inline", "udp", "serial"])
 def test_an_estimate_beyond_a_kilometre_stops_the_robot(
-    laglab: Laglab, tmp_path: Path, transport: str
+    ended: Callable[..., Any], tmp_path: Path, transport: str
 ) -> None:
-    result = laglab(
-        "run", "fig8", "--p0", "0.1", "--duration", "60", "--transport", transport, "--out", "run"
-    )
-    assert result.returncode == 3
+    options = ("--transport", transport, "--out", tmp_path / "run")
+    code, out, _ = ended("run", "fig8", "--p0", "0.1", "--duration", "60", *options)
+    assert code == 3
     summary = json.loads((tmp_path / "run" / "summary.json").read_text())
     trace = read_trace(tmp_path / "run" / "trace.csv")
     last = int(trace["tick"][-1])
     assert f"stopped at tick {last}" in summary["verdict"]
-    assert summary["verdict"] in result.stdout
+    assert summary["verdict"] in out
     assert trace["v_sent"][-1] == trace["omega_sent"][-1] == 0
     assert not abs(trace["x_est"][-1]) < 1000 or not abs(trace["y_est"][-1]) < 1000
     assert (tmp_path / "run" / "figure.png").exists()

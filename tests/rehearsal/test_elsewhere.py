@@ -120,30 +120,50 @@ def test_without_terminals_all_but_serial_works(
     assert "Traceback" not in ended.stderr
 
 
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        ("run", "fig6", "--transport", "serial"),
-        ("gateway", "fig6", "--endpoint", "pty://port"),
-        ("gateway", "fig6", "--plant", "/dev/ttyUSB0,57600"),
-        ("controller", "fig6", "--endpoint", "serial:///dev/ttyUSB0:57600"),
-        ("conform", "serial:///dev/ttyUSB0:57600", "--side", "robot"),
-        ("serial", "port-1", "port-2"),
-        ("bench", "loop", "--link", "serial", "--rounds", "1"),
-    ],
-)
-def test_without_terminals_serial_says_so(windows: Python, arguments: tuple[str, ...]) -> None:
-    said = one_line(windows("-m", "laglab", *arguments))
-    assert "this system has no serial ports and ptys" in said
+ENDINGS = """
+import sys
+from laglab.command import main
+
+for line in sys.argv[1:]:
+    try:
+        main(line.split())
+    except SystemExit as ended:
+        print(ended.code, file=sys.stderr)
+"""
+
+
+def endings(python: Python, *commands: str) -> list[tuple[str, str]]:
+    """Of each command, in one process: the line on standard error, and the exit code."""
+    lines = python("-c", ENDINGS, *commands).stderr.splitlines()
+    return list(zip(lines[::2], lines[1::2], strict=True))
+
+
+def test_without_terminals_serial_says_so(windows: Python) -> None:
+    commands = (
+        "run fig6 --transport serial",
+        "gateway fig6 --endpoint pty://port",
+        "gateway fig6 --plant /dev/ttyUSB0,57600",
+        "controller fig6 --endpoint serial:///dev/ttyUSB0:57600",
+        "conform serial:///dev/ttyUSB0:57600 --side robot",
+        "serial port-1 port-2",
+        "bench loop --link serial --rounds 1",
+    )
+    found = endings(windows, *commands)
+    assert len(found) == len(commands)
+    for line, code in found:
+        assert "this system has no serial ports and ptys" in line
+        assert code == "2"
 
 
 def test_what_an_export_needs_is_said(tmp_path: Path) -> None:
     """And without any of it there is CSV."""
     bare = without(tmp_path, {"pyarrow", "scipy", "mcap_ros2", "mcap"})
     laglab.run("fig6", {"duration": 0.1}, out=tmp_path / "run")
-    for name, missing in (("parquet", "pyarrow"), ("mat", "scipy"), ("ros2bag", "mcap_ros2")):
-        said = one_line(bare("-m", "laglab", "export", "run", "--format", name))
-        assert f"{missing} is not installed here: pip install 'laglab[export]'" in said
+    needed = {"parquet": "pyarrow", "mat": "scipy", "ros2bag": "mcap_ros2"}
+    found = endings(bare, *(f"export run --format {name}" for name in needed))
+    for missing, (line, code) in zip(needed.values(), found, strict=True):
+        assert f"{missing} is not installed here: pip install 'laglab[export]'" in line
+        assert code == "2"
     assert bare("-m", "laglab", "export", "run", "--format", "csv").returncode == 0
     assert {path.name for path in tmp_path.iterdir()} == {"hiding", "run", "run-csv"}
 

@@ -2,6 +2,7 @@
 
 import csv
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,6 @@ import pytest
 import scipy.io
 
 import laglab
-from laglab.command import main
 from laglab.export import export
 from laglab.export.formats import FORMATS
 from laglab.export.tables import tables
@@ -19,6 +19,9 @@ from laglab.results.meaning import FILES, tick_columns
 from laglab.results.run import Run
 from laglab.results.shadows import COLUMNS
 from laglab_gateway import ROWS, TRACE_FILE, TraceRow
+
+Exported = Callable[..., Path]
+Refused = Callable[..., str]
 
 DOCS = Path(__file__).parents[2] / "docs"
 SHADOW = "popf-exact"
@@ -38,24 +41,15 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-def exported(run: Run, *options: str) -> Path:
+@pytest.fixture
+def exported(ended: Callable[..., Any]) -> Exported:
     """By the command."""
-    assert run.directory is not None
-    with pytest.raises(SystemExit) as ended:
-        main(["export", str(run.directory), "--format", *options])
-    assert ended.value.code == 0
-    return Path.cwd()
 
+    def call(run: Run, *options: str) -> Path:
+        assert ended("export", run.directory, "--format", *options).code == 0
+        return Path.cwd()
 
-def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
-    """The one line that is said."""
-    capsys.readouterr()
-    with pytest.raises(SystemExit) as ended:
-        main(["export", *arguments])
-    said = capsys.readouterr()
-    assert (ended.value.code, said.out) == (2, "")
-    (line,) = said.err.splitlines()
-    return line
+    return call
 
 
 def known(run: Run) -> dict[str, Any]:
@@ -74,7 +68,7 @@ def assert_equal(read: dict[str, Any], expected: dict[str, Any]) -> None:
         np.testing.assert_array_equal(read[name], column, name)
 
 
-def test_csv_reads_back(a_run: Run) -> None:
+def test_csv_reads_back(exported: Exported, a_run: Run) -> None:
     folder = exported(a_run, "csv") / "radio-csv"
     with (folder / "ticks.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
@@ -87,7 +81,7 @@ def test_csv_reads_back(a_run: Run) -> None:
         assert (folder / name).read_text() == (a_run.directory / name).read_text()
 
 
-def test_parquet_reads_back_and_says_its_units(a_run: Run) -> None:
+def test_parquet_reads_back_and_says_its_units(exported: Exported, a_run: Run) -> None:
     folder = exported(a_run, "parquet") / "radio-parquet"
     ticks = pyarrow.parquet.read_table(folder / "ticks.parquet")
     assert_equal({name: ticks[name].to_numpy() for name in ticks.column_names}, known(a_run))
@@ -102,7 +96,7 @@ def test_parquet_reads_back_and_says_its_units(a_run: Run) -> None:
         assert_equal(read, dict(expected))
 
 
-def test_mat_reads_back_and_says_its_units(a_run: Run) -> None:
+def test_mat_reads_back_and_says_its_units(exported: Exported, a_run: Run) -> None:
     exported(a_run, "mat")
     read = scipy.io.loadmat("radio.mat", squeeze_me=True, struct_as_record=False)
     expected = {name.replace("-", "_"): column for name, column in known(a_run).items()}
@@ -113,7 +107,9 @@ def test_mat_reads_back_and_says_its_units(a_run: Run) -> None:
 
 
 @pytest.mark.parametrize("name", FORMATS)
-def test_the_same_run_gives_the_same_bytes(name: str, a_run: Run, tmp_path: Path) -> None:
+def test_the_same_run_gives_the_same_bytes(
+    exported: Exported, name: str, a_run: Run, tmp_path: Path
+) -> None:
     ending = FORMATS[name].ending  # type: ignore[index]
     contents = []
     for _ in range(2):
@@ -125,39 +121,39 @@ def test_the_same_run_gives_the_same_bytes(name: str, a_run: Run, tmp_path: Path
 
 
 @pytest.mark.parametrize("name", FORMATS)
-def test_what_is_there_is_kept(name: str, a_run: Run, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_there_is_kept(exported: Exported, name: str, a_run: Run, refused: Refused) -> None:
     form = FORMATS[name]  # type: ignore[index]
     place = Path(f"radio{form.ending}")
     place = place / form.files[0] if form.files else place
     place.parent.mkdir(exist_ok=True)
     place.write_text("kept")
-    line = refused(capsys, str(a_run.directory), "--format", name)
+    line = refused("export", a_run.directory, "--format", name)
     assert line == f"laglab: {place} is there already: say another --out, or --force"
     assert place.read_text() == "kept"
     exported(a_run, name, "--force")
     assert place.read_bytes() != b"kept"
 
 
-def test_what_cannot_be_is_a_line(a_run: Run, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_cannot_be_is_a_line(a_run: Run, refused: Refused) -> None:
     Path("empty").mkdir()
-    assert "empty/summary.json" in refused(capsys, "empty", "--format", "csv")
-    assert "'xlsx' is not one of 'csv'" in refused(capsys, str(a_run.directory), "--format", "xlsx")
+    assert "empty/summary.json" in refused("export", "empty", "--format", "csv")
+    assert "'xlsx' is not one of 'csv'" in refused("export", a_run.directory, "--format", "xlsx")
     for name, place in (("csv", "empty/file/below"), ("mcap", "empty"), ("mat", "/proc/none")):
         Path("empty/file").write_text("")
         options = ("--format", name, "--out", place)
-        assert place in refused(capsys, str(a_run.directory), *options)
+        assert place in refused("export", a_run.directory, *options)
 
 
 @pytest.mark.parametrize("damage", [("tick", "tock"), ("1", "1e308")])
 @pytest.mark.parametrize("file", ["trace.csv", "claims.csv", "arrivals.csv", SHADOW_FILE])
 def test_a_damaged_table_is_told_in_a_line(
-    file: str, damage: tuple[str, str], a_run: Run, capsys: pytest.CaptureFixture[str]
+    file: str, damage: tuple[str, str], a_run: Run, refused: Refused
 ) -> None:
     assert a_run.directory
     shutil.copytree(a_run.directory, "run")
     Path("run", file).write_text((a_run.directory / file).read_text().replace(*damage))
     for name in ("csv", "mcap"):
-        assert "run" in refused(capsys, "run", "--format", name)
+        assert "run" in refused("export", "run", "--format", name)
     assert not Path("run.mcap").exists()
 
 

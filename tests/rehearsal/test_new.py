@@ -5,23 +5,21 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from laglab.command import main
-
+Ended = Callable[..., Any]
 Run = Callable[..., "subprocess.CompletedProcess[str]"]
 pytestmark = pytest.mark.timeout(180)
 
 
 @pytest.fixture
-def installed(tmp_path: Path) -> Callable[[str, str], Run]:
+def installed(tmp_path: Path, ended: Ended) -> Callable[[str, str], Run]:
     """Makes a package, installs it into a folder, and gives what runs Python with that folder."""
 
     def install(kind: str, name: str) -> Run:
-        with pytest.raises(SystemExit) as ended:
-            main(["new", kind, name, "--out", str(tmp_path / "made")])
-        assert ended.value.code == 0
+        assert ended("new", kind, name, "--out", tmp_path / "made").code == 0
         pip = [f"{sys.base_prefix}/bin/python3", "-m", "pip", "--python", sys.executable, "install"]
         options = ["-q", "--no-deps", "--no-build-isolation", "--target", str(tmp_path / "site")]
         package = str(tmp_path / "made" / name)
@@ -72,23 +70,14 @@ def test_what_is_made_is_installed_listed_checked_and_run(
 
 @pytest.mark.parametrize("kind", ["estimator", "law", "plant"])
 def test_each_template_keeps_its_interface(
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-    kind: str,
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ended: Ended, kind: str
 ) -> None:
     name = f"begun-{kind}"
-    for arguments in (
-        ["new", kind, name, "--out", str(tmp_path)],
-        ["check", f"begun_{kind}:Begun{kind.capitalize()}"],
-    ):
-        with pytest.raises(SystemExit) as ended:
-            main(arguments)
-        assert ended.value.code == 0, capsys.readouterr()
-        monkeypatch.chdir(tmp_path / name)
-    assert (
-        f"keeps the interface of a{'n' * (kind == 'estimator')} {kind}" in capsys.readouterr().out
-    )
+    assert ended("new", kind, name, "--out", tmp_path).code == 0
+    monkeypatch.chdir(tmp_path / name)
+    checked = ended("check", f"begun_{kind}:Begun{kind.capitalize()}")
+    assert checked.code == 0, checked
+    assert f"keeps the interface of a{'n' * (kind == 'estimator')} {kind}" in checked.out
 
 
 @pytest.mark.parametrize(
@@ -105,11 +94,7 @@ def test_each_template_keeps_its_interface(
     ],
 )
 def test_what_cannot_be_made_is_one_line(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, said: str
+    tmp_path: Path, refused: Callable[..., str], name: str, said: str
 ) -> None:
     (tmp_path / "there").mkdir()
-    with pytest.raises(SystemExit) as ended:
-        main(["new", "law", name, "--out", str(tmp_path)])
-    assert ended.value.code == 2
-    (line,) = capsys.readouterr().err.strip().splitlines()
-    assert said in line
+    assert said in refused("new", "law", name, "--out", tmp_path)

@@ -164,16 +164,10 @@ def test_what_a_scenario_refuses(told: dict[str, object], said: str) -> None:
     assert said in str(error.value)
 
 
-def test_an_option_that_tracking_does_not_have(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    from laglab.command import main
-
-    arguments = ["run", "track-circle", "--set", "law.options.k_z=1", "--transport", "inline"]
-    with pytest.raises(SystemExit) as ended:
-        main([*arguments, "--out", str(tmp_path / "run")])
-    assert ended.value.code == 2
-    assert "law.options: tracking has k_x, k_y, k_theta, not k_z" in capsys.readouterr().err
+def test_an_option_that_tracking_does_not_have(tmp_path: Path, refused: Callable[..., str]) -> None:
+    options = ("--set", "law.options.k_z=1", "--transport", "inline", "--out", tmp_path / "run")
+    line = refused("run", "track-circle", *options)
+    assert "law.options: tracking has k_x, k_y, k_theta, not k_z" in line
 
 
 def test_the_target_of_a_run_without_a_path_is_its_goal() -> None:

@@ -7,24 +7,28 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pymavlink
 import pytest
 
+import laglab
 from laglab.scenario import load
 from laglab_gateway import read_trace
 
 Laglab = Callable[..., subprocess.CompletedProcess[str]]
+Ended = Callable[..., Any]
 Python = Callable[..., str]
 
 
-@pytest.fixture
-def run(laglab: Laglab, tmp_path: Path) -> Path:
-    result = laglab("run", "fig8", "--seed", "3", "--duration", "2", "--out", "run")
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory, laglab_in: Callable[[Path], Laglab]) -> Path:
+    folder = tmp_path_factory.mktemp("fig8")
+    result = laglab_in(folder)("run", "fig8", "--seed", "3", "--duration", "2", "--out", "run")
     assert result.returncode == 0, result.stderr
     assert "× real time" in result.stdout
-    return tmp_path / "run"
+    return folder / "run"
 
 
 def test_the_trace_has_a_row_for_every_tick(run: Path) -> None:
@@ -110,29 +114,34 @@ def test_the_figure_is_a_picture(run: Path) -> None:
     assert (run / "figure.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_an_earlier_run_is_not_overwritten(laglab: Laglab, tmp_path: Path) -> None:
-    arguments = ("run", "fig4", "--duration", "0.1", "--transport", "inline")
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_an_earlier_run_is_not_overwritten(ended: Ended, folder: Path) -> None:
     for _ in range(2):
-        assert laglab(*arguments).returncode == 0
-    assert sorted(path.name for path in (tmp_path / "runs").iterdir()) == ["fig4", "fig4-2"]
+        assert ended("run", "fig4", "--duration", "0.1", "--transport", "inline").code == 0
+    assert sorted(path.name for path in (folder / "runs").iterdir()) == ["fig4", "fig4-2"]
 
 
-def test_compare_draws_what_two_runs_left(laglab: Laglab, tmp_path: Path) -> None:
+def test_compare_draws_what_two_runs_left(ended: Ended, folder: Path) -> None:
     for name in ("fig4", "fig5"):
-        assert laglab("run", name, "--transport", "inline", "--out", name).returncode == 0
-    assert laglab("compare", "fig4", "fig5", "--out", "both.png").returncode == 0
-    assert (tmp_path / "both.png").read_bytes().startswith(b"\x89PNG")
+        laglab.run(name, {"duration": 1.0}, out=name)
+    assert ended("compare", "fig4", "fig5", "--out", "both.png").code == 0
+    assert (folder / "both.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_scenarios_lists_all_that_ship(laglab: Laglab) -> None:
-    listed = laglab("scenarios").stdout
+def test_scenarios_lists_all_that_ship(ended: Ended) -> None:
+    listed = ended("scenarios").out
     for name in ("fig4", "fig5", "fig6", "fig7", "fig8", "lab"):
         assert name in listed
 
 
-def test_a_report_is_left_where_one_is_asked_for(laglab: Laglab, tmp_path: Path) -> None:
+def test_a_report_is_left_where_one_is_asked_for(ended: Ended, folder: Path) -> None:
     short = ("run", "fig4", "--transport", "inline", "--duration", "0.5", "--out", "run")
-    result = laglab(*short, "--report")
-    assert result.returncode == 0, result.stderr
-    assert "report in run/report.html" in result.stdout
-    assert "fig4" in (tmp_path / "run" / "report.html").read_text("utf-8")
+    done = ended(*short, "--report")
+    assert done.code == 0, done.err
+    assert "report in run/report.html" in done.out
+    assert "fig4" in (folder / "run" / "report.html").read_text("utf-8")

@@ -2,12 +2,13 @@
 
 import re
 import shlex
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import laglab
-from laglab.command import main
 from laglab.runs.robot_side import link_fates
 from laglab.scenario import Scenario
 from laglab.studies.rivals import (
@@ -32,15 +33,14 @@ def scenario_of(link: str, strategy: str, base: str = "lab", **keys: object) -> 
 
 
 def test_the_command_leaves_table_and_picture(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, ended: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     options = ["--seeds", "1", "--on", "ideal", "--on", "outages", "--workers", "2"]
     chosen = ["--only", "raw", "--only", "plans", "--only", "guarded", "--out", "met.pdf"]
-    with pytest.raises(SystemExit) as ended:
-        main(["rivals", "lab", *options, *chosen])
-    assert ended.value.code == 0
-    lines = capsys.readouterr().out.splitlines()
+    code, out, _ = ended("rivals", "lab", *options, *chosen)
+    assert code == 0
+    lines = out.splitlines()
     assert lines[0].split() == ["lab,", "n", "=", "10,", "m", "=", "20,", "1", "runs", "each"]
     rows = [line.split() for line in lines if line.endswith(tuple("0123456789"))]
     raw, plans, guarded, *_ = (row[-5:] for row in rows)
@@ -121,16 +121,15 @@ def test_the_scores_are_those_of_the_runs() -> None:
     ],
 )
 def test_what_cannot_be_is_one_line(
-    options: tuple[str, str], said: str, capsys: pytest.CaptureFixture[str]
+    options: tuple[str, ...], said: str, refused: Callable[..., str]
 ) -> None:
-    with pytest.raises(SystemExit) as ended:
-        main(["rivals", "lab", *options])
-    assert ended.value.code == 2
-    assert said in capsys.readouterr().err
+    assert said in refused("rivals", "lab", *options)
 
 
 @pytest.mark.slow
-def test_each_command_of_its_page_works(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_command_of_its_page_works(
+    tmp_path: Path, ended: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     laglab.run("lab", {"duration": 1.0, "link.command.loss": 0.5}, out=tmp_path / "run")
     (tmp_path / "run" / "link.csv").rename(tmp_path / "link.csv")
@@ -139,7 +138,5 @@ def test_each_command_of_its_page_works(tmp_path: Path, monkeypatch: pytest.Monk
     assert len(commands) == 2
     for command in commands:
         small = ["--seeds", "1", "--duration", "2", "--only", "plans"]
-        with pytest.raises(SystemExit) as ended:
-            main([*shlex.split(command), *small])
-        assert ended.value.code == 0, command
+        assert ended(*shlex.split(command), *small).code == 0, command
         assert (tmp_path / "rivals.png").read_bytes().startswith(b"\x89PNG")

@@ -1,22 +1,25 @@
 """Several filters in one run: the first in the loop, the others on the same record."""
 
+import json
+
 import numpy as np
 import pytest
 
 from laglab.results.shadows import beside
 
 
-def test_the_first_drives_and_all_are_compared(rehearsed, tmp_path, capsys):
+def test_the_first_drives_and_all_are_compared(ended, tmp_path):
     names = ["delayed-ekf", "popf", "ekf"]
     options = [part for name in names for part in ("--estimator", name)]
     unguarded = ("--set", "estimator.guard=false")
-    summary = rehearsed("lab", "--duration", "3", *unguarded, *options)
+    inline = ("--transport", "inline", "--out", tmp_path / "run")
+    table = ended("run", "lab", "--duration", "3", *unguarded, *options, *inline).out
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text())
     assert summary["estimator"] == "delayed-ekf"
     errors = summary["compare"]
     assert list(errors) == names
     assert errors["delayed-ekf"] == summary["rms_error"]
     assert errors["ekf"]["x"] > 3 * errors["popf"]["x"]
-    table = capsys.readouterr().out
     assert all(f"RMS error of {name}" in table for name in names)
     assert (tmp_path / "run" / "figure.png").exists()
 
@@ -30,21 +33,17 @@ def test_a_shadow_hears_what_the_station_heard(rehearsed):
 
 
 @pytest.mark.parametrize("transport", ["inline", "udp"])
-def test_the_station_reports_delays_speed_and_warnings(laglab, tmp_path, transport):
-    import json
-
+def test_the_station_reports_delays_speed_and_warnings(ended, tmp_path, transport):
     out = tmp_path / transport
-    ended = laglab(
-        "run", "fig6", "--p0", "1e-3", "--duration", "1", "--transport", transport,
-        "--out", str(out),
-    )  # fmt: skip
+    options = ("--p0", "1e-3", "--duration", "1", "--transport", transport, "--out", out)
+    done = ended("run", "fig6", *options)
     station = json.loads((out / "summary.json").read_text())["station"]
     assert (station["n_seen"], station["m_seen"]) == (10, 20)
     assert 0 < station["tick_p50_s"] <= station["tick_p99_s"] <= station["tick_longest_s"] < 1
     (warning,) = station["warnings"]
     assert warning.startswith("tick 20: popf's gain is 0.")
-    assert " ".join(ended.stderr.split()).count(warning) == 1
-    assert "p99" in ended.stdout
+    assert " ".join(done.err.split()).count(warning) == 1
+    assert "p99" in done.out
 
 
 def test_what_was_said_of_ticks_that_the_trace_lacks_is_left_out() -> None:

@@ -7,57 +7,51 @@ from pathlib import Path
 
 import pytest
 
+from laglab.runs.rehearse import Transport
+from laglab.runs.whole import run_into
+from laglab.scenario import Scenario, load
 from laglab_protocol import Tick, read_tlog
 
 Start = Callable[..., "subprocess.Popen[str]"]
-Laglab = Callable[..., subprocess.CompletedProcess[str]]
 
-SCENARIOS = [("fig5",), ("fig8", "--seed", "7"), ("lab", "--duration", "3"), ("fig4", "--noise")]
+SCENARIOS: dict[str, dict[str, object]] = {
+    "fig5": {},
+    "fig8": {"seed": 7},
+    "lab": {"duration": 3.0},
+    "fig4": {"noise": True},
+}
 
 
-def trace(laglab: Laglab, where: Path, *arguments: str) -> bytes:
-    result = laglab("run", *arguments, "--out", str(where))
-    assert result.returncode == 0, result.stderr
+def trace(folder: Path, scenario: Scenario, transport: Transport = "inline") -> bytes:
+    where = folder / transport
+    where.mkdir(parents=True)
+    ending = run_into(where, scenario, transport, lambda *_: None)
+    assert ending.exit_code == 0, ending.problem
     return (where / "trace.csv").read_bytes()
 
 
-@pytest.mark.parametrize("scenario", SCENARIOS, ids=lambda words: words[0])
-def test_inline_udp_and_serial_agree(
-    laglab: Laglab, tmp_path: Path, scenario: tuple[str, ...]
-) -> None:
-    traces = {
-        transport: trace(laglab, tmp_path / transport, *scenario, "--transport", transport)
-        for transport in ("inline", "udp", "serial")
-    }
-    assert traces["udp"] == traces["inline"]
-    assert traces["serial"] == traces["inline"]
+@pytest.mark.parametrize(("name", "keys"), SCENARIOS.items())
+def test_inline_udp_and_serial_agree(tmp_path: Path, name: str, keys: dict[str, object]) -> None:
+    scenario = load(name, keys)
+    inline, udp, serial = (trace(tmp_path, scenario, way) for way in ("inline", "udp", "serial"))
+    assert udp == inline
+    assert serial == inline
 
 
-def test_fmi_2_and_3_agree(laglab: Laglab, tmp_path: Path) -> None:
-    traces = [
-        trace(laglab, tmp_path / fmi, "fig8", "--transport", "inline", "--fmi", fmi)
-        for fmi in ("2", "3")
-    ]
-    assert traces[0] == traces[1]
-
-
-def test_another_seed_gives_another_trace(laglab: Laglab, tmp_path: Path) -> None:
-    traces = [
-        trace(laglab, tmp_path / seed, "fig8", "--transport", "inline", "--seed", seed)
-        for seed in ("1", "2")
-    ]
-    assert traces[0] != traces[1]
+@pytest.mark.parametrize("key", ["plant.fmi", "seed"])
+def test_another_fmi_changes_nothing_and_another_seed_all(tmp_path: Path, key: str) -> None:
+    two, three = (trace(tmp_path / str(to), load("fig8", {key: to})) for to in (2, 3))
+    assert (two == three) == (key == "plant.fmi")
 
 
 def test_lost_datagrams_change_nothing(
     start: Start,
     start_program: Start,
     listening_port: Callable[["subprocess.Popen[str]"], str],
-    laglab: Laglab,
     tmp_path: Path,
 ) -> None:
     options = ("lab", "--duration", "0.6")
-    calm = trace(laglab, tmp_path / "calm", *options, "--transport", "inline")
+    calm = trace(tmp_path, load("lab", {"duration": 0.6}))
     gateway = start("gateway", *options, "--endpoint", "udpin://127.0.0.1:0", "--out", "lossy")
     port = listening_port(gateway)
     relay, loss = Path(__file__).with_name("relay.py"), 1 / 7

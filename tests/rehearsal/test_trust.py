@@ -2,16 +2,13 @@
 
 import pytest
 
-from laglab.command import main
 from laglab.studies.trust import CONDITIONS, Fared, Trial, scores, stations
 
 
-def test_the_command_leaves_table_and_picture(tmp_path, capsys, monkeypatch):
+def test_the_command_leaves_table_and_picture(tmp_path, ended, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(SystemExit) as ended:
-        main(["trust", "--seeds", "1", "--only", "moved by 0.5 m", "--only", "lab"])
-    assert ended.value.code == 0
-    page = capsys.readouterr().out
+    code, page, _ = ended("trust", "--seeds", "1", "--only", "moved by 0.5 m", "--only", "lab")
+    assert code == 0
     moved, lab = (
         next(line for line in page.splitlines() if line.startswith(name)).split()
         for name in ("moved by 0.5 m", "lab ")
@@ -43,10 +40,7 @@ def test_the_scores_are_those_of_the_runs():
 
 
 @pytest.mark.parametrize("options", [("--only", "nonsense"), ("--estimator", "nonsense")])
-def test_what_is_not_known_is_one_line(options, capsys):
-    with pytest.raises(SystemExit) as ended:
-        main(["trust", *options])
-    assert ended.value.code == 2
-    said = capsys.readouterr().err
+def test_what_is_not_known_is_one_line(options, refused):
+    said = refused("trust", *options)
     assert "not one of" in said or "must be one of" in said
     assert "'nonsense'" in said

@@ -1,12 +1,12 @@
 """Whatever the user got wrong is one line that names it, exit 2, and no traceback."""
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from laglab.command import main
-
+Refused = Callable[..., str]
 WRONG = [
     (["run", "fig9"], "fig9: no such scenario"),
     (["run", "x" * 300], "File name too long"),
@@ -62,16 +62,10 @@ def test_one_line_names_the_field(
     named: str,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    refused: Refused,
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(SystemExit) as ended:
-        main(arguments)
-    output = capsys.readouterr()
-    assert ended.value.code == 2
-    assert named in output.err
-    assert len(output.err.splitlines()) == 1
-    assert output.out == ""
+    assert named in refused(*arguments)
 
 
 BROKEN_FILES = {
@@ -128,16 +122,12 @@ BROKEN_FILES = {
 
 @pytest.mark.parametrize("text", BROKEN_FILES)
 def test_a_bad_scenario_file_names_file_and_field(
-    text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    text: str, tmp_path: Path, refused: Refused
 ) -> None:
     path = tmp_path / "own.toml"
     path.write_text(text)
-    with pytest.raises(SystemExit) as ended:
-        main(["run", str(path), "--out", str(tmp_path / "out")])
-    error = capsys.readouterr().err
-    assert ended.value.code == 2
-    assert error.startswith(f"laglab: {path}: ")
-    assert BROKEN_FILES[text] in error
-    assert len(error.splitlines()) == 1
-    assert len(error) < 400
+    line = refused("run", path, "--out", tmp_path / "out")
+    assert line.startswith(f"laglab: {path}: ")
+    assert BROKEN_FILES[text] in line
+    assert len(line) < 400
     assert not (tmp_path / "out").exists()

@@ -109,8 +109,9 @@ def test_commands_out_of_the_robots_limits_are_refused_and_counted(
 
 
 def test_a_longer_run_goes_through_a_replay_again_and_says_so(
-    laglab: Laglab, tmp_path: Path
+    ended: Ended, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.chdir(tmp_path)
     recorded = [
         f"{way},{tick},0,0,60,{'lost' if tick % 3 else 'delivered'},0.0\n"
         for tick in range(50)
@@ -118,13 +119,13 @@ def test_a_longer_run_goes_through_a_replay_again_and_says_so(
     ]
     (tmp_path / "link.csv").write_text(LINK_HEADER + "".join(recorded))
     options = ("--timeline", "link.csv", "--duration", "2", "--transport", "inline")
-    result = laglab("run", "lab", *options)
-    assert "link.csv holds 0.5 s of a link: the run goes through it 4.02 times" in result.stderr
+    told = ended("run", "lab", *options).err
+    assert "link.csv holds 0.5 s of a link: the run goes through it 4.02 times" in told
     rows = read_link_log(tmp_path / "runs/lab/link.csv", "command")
     fates = [row.fate for row in rows if row.frame == 0]
     assert fates == [("delivered", "lost", "lost")[tick % 50 % 3] for tick in range(201)]
-    short = laglab("run", "lab", *options[:3], "0.3", "--transport", "inline", "--force")
-    assert "holds" not in short.stderr
+    short = (*options[:3], "0.3", "--transport", "inline", "--force")
+    assert "holds" not in ended("run", "lab", *short).err
 
 
 BAD_TIMELINES = {
@@ -154,12 +155,15 @@ def test_a_bad_timeline_is_one_line_that_names_it(
     assert named in refused("run", "fig6", "--timeline", tmp_path / name)
 
 
-def test_what_was_really_run_holds_the_timeline(laglab: Laglab, tmp_path: Path) -> None:
+def test_what_was_really_run_holds_the_timeline(
+    ended: Ended, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
     (tmp_path / "outage.toml").write_text(OUTAGE)
     options = ("--timeline", "outage.toml", "--duration", "3", "--transport", "inline")
-    assert laglab("run", "lab", *options, "--out", "first").returncode == 0
+    assert ended("run", "lab", *options, "--out", "first").code == 0
     again = ("--transport", "inline", "--out", "again")
-    assert laglab("run", "first/scenario.toml", *again).returncode == 0
+    assert ended("run", "first/scenario.toml", *again).code == 0
     traces = [(tmp_path / name / "trace.csv").read_bytes() for name in ("first", "again")]
     assert traces[0] == traces[1]
     assert json.loads((tmp_path / "first" / "summary.json").read_text())["scenario"] == "lab"
