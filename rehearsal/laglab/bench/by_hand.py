@@ -23,8 +23,8 @@ from fmpy.fmi2 import FMU2Slave
 from laglab.bench.round_trip import Link
 from laglab.bench.whole_run import Loop, loop_of
 from laglab.errors import RunError
-from laglab.runs.child import Inbox, Tell, started
-from laglab.runs.reports import Listening, Order, Progress
+from laglab.runs.processes.child import Inbox, Tell, started
+from laglab.runs.processes.reports import Listening, Order, Progress
 from laglab.scenario import Scenario
 from laglab_control import Controller, Echo, Measured
 from laglab_fmu import RobotParameters, fmu_path

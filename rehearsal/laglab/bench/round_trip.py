@@ -9,7 +9,7 @@ from typing import Literal
 
 from msgspec import Struct
 
-from laglab.runs.child import Tell, started
+from laglab.runs.processes.child import Tell, started
 from laglab_protocol import Command, Estimate, Measurement, Message, Sender, Tick
 
 POSE = (0.1, 0.1, 0.1)

@@ -7,7 +7,7 @@ from threading import Thread
 from typing import TypeVar
 
 from laglab.live.messages import Rows
-from laglab.results.station_record import record_session
+from laglab.results.station import record_session
 from laglab.scenario import Scenario
 from laglab_gateway import ArrivalRow, ClaimRow, Recorder, TraceRow
 from laglab_protocol import ROBOT_SYSTEM, Frame, Statustext, decode

@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from laglab.errors import RefusedError, RunError
 from laglab.results.columns import Columns, columns_of
-from laglab.results.digest import Digest, digest
+from laglab.results.digest import Digest, digest, followed
 from laglab.results.figures import save_figure
-from laglab.results.following import followed
 from laglab.results.numbers import goal_errors, has_converged, robot_pose
 from laglab.results.run import Kept, Run
 from laglab.results.shadows import (

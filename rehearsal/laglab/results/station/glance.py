@@ -3,7 +3,7 @@
 from collections import deque
 from collections.abc import Iterator, Sequence
 
-from laglab.results.heard import heard_ticks
+from laglab.results.station.heard import heard_ticks
 from laglab.runs.glance import Glance, Glances
 from laglab.scenario import Scenario
 from laglab_gateway import TraceRow
