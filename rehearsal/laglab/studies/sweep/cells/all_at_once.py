@@ -9,8 +9,8 @@ from laglab.scenario import Scenario
 from laglab.scenario.tables.link import LinkTable
 from laglab.studies.judged import Judgements, Record, judgements
 from laglab.studies.many import Many, is_ideal, run_many
-from laglab.studies.sweep.cell import Cell
-from laglab.studies.sweep.one_by_one import judged_alone
+from laglab.studies.sweep.cells.cell import Cell
+from laglab.studies.sweep.cells.one_by_one import judged_alone
 
 SQUARE = [[0, 1, 2], [1, 3, 4], [2, 4, 5]]
 """Where in an upper triangle the elements of a whole matrix are."""

@@ -11,7 +11,7 @@ from laglab.interface import run
 from laglab.results.run import Run
 from laglab.scenario import Scenario
 from laglab.studies.judged import Array, Judgements, Record, joined, judgements, record_of
-from laglab.studies.sweep.cell import Cell
+from laglab.studies.sweep.cells.cell import Cell
 from laglab_control import Applied, Control, Controller, Echo, Measured
 
 ENDINGS = ("completed", "diverged")
