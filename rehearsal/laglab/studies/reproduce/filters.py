@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from laglab.interface import run
-from laglab.results.numbers import loop_estimates, shadow_estimates
+from laglab.results.numbers import loop_estimates, measurements, shadow_estimates
 from laglab.scenario import load
 from laglab.studies.consistency import Job, chi_square_bounds, judge, nth, verdict
 from laglab.studies.errata import VARIANTS, Variant, cost
@@ -20,7 +20,6 @@ CHANCE = 1e-3
 CORRECTED = VARIANTS[0]
 P_0 = 1e-2
 """[m², rad²] As large as R."""
-MEASURED = ("x_meas", "y_meas", "theta_meas")
 MOVED = 100
 """The tick at which a measurement is moved."""
 
@@ -36,14 +35,17 @@ def first_felt() -> Evidence:
     """When a measurement first shows in the estimate: one of the record is moved by a metre."""
     done = run("fig8")
     m = done.scenario.link.measurement_delay
-    x, y, theta, v, omega = (done.trace[name] for name in (*MEASURED, "v", "omega"))
-    z, inputs = np.stack([x, y, theta], axis=1), np.stack([v, omega], axis=1)[:-1]
+    z, inputs = measurements(done.trace), np.stack([done.trace["v"], done.trace["omega"]], axis=1)
     moved = z.copy()
     moved[MOVED, 0] += 1.0
     P = done.scenario.estimator.initial_covariance * np.eye(3)
     told = [
         replay(
-            Popf(RobotModel()), np.array(done.scenario.start), P, inputs, constant_delay(each, m)
+            Popf(RobotModel()),
+            np.array(done.scenario.start),
+            P,
+            inputs[:-1],
+            constant_delay(each, m),
         )
         for each in (z, moved)
     ]
