@@ -27,9 +27,8 @@ class StationGlance:
 
     def now(self) -> Glance | None:
         """At the last tick heard; None before the first."""
-        for tick, arrivals, claims in heard_ticks(
-            heard(decoded(self._frames)), self._sample_time, 0
-        ):
+        session = heard(decoded(self._frames))
+        for tick, arrivals, claims in heard_ticks(session, self._sample_time, 0):
             self._glances.arrivals(arrivals)
             if claims:
                 self._glances.claims(claims)

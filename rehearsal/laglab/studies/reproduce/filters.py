@@ -35,19 +35,13 @@ def first_felt() -> Evidence:
     """When a measurement first shows in the estimate: one of the record is moved by a metre."""
     done = run("fig8")
     m = done.scenario.link.measurement_delay
-    z, inputs = measurements(done.trace), np.stack([done.trace["v"], done.trace["omega"]], axis=1)
+    trace, start = done.trace, np.array(done.scenario.start)
+    z, inputs = measurements(trace), np.stack([trace["v"], trace["omega"]], axis=1)[:-1]
     moved = z.copy()
     moved[MOVED, 0] += 1.0
     P = done.scenario.estimator.initial_covariance * np.eye(3)
     told = [
-        replay(
-            Popf(RobotModel()),
-            np.array(done.scenario.start),
-            P,
-            inputs[:-1],
-            constant_delay(each, m),
-        )
-        for each in (z, moved)
+        replay(Popf(RobotModel()), start, P, inputs, constant_delay(each, m)) for each in (z, moved)
     ]
     differ = np.abs(told[1].estimates - told[0].estimates).max(axis=1) > 0
     return Evidence({"later": float(np.argmax(differ) - MOVED), "m": float(m)})
