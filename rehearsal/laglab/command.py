@@ -7,36 +7,20 @@ from typing import Annotated
 import typer
 
 from laglab import __version__
-from laglab.commands import (
-    animate,
-    bench,
-    check,
-    compare,
+from laglab.commands import bench, link, protocol
+from laglab.commands.group import alone, group
+from laglab.commands.parts import check, estimators, fmu, new, plant, scenario, scenarios
+from laglab.commands.results import animate, compare, export, figure, report
+from laglab.commands.runs import replay, run, serial, sides, soak
+from laglab.commands.studies import (
     consistency,
     errata,
-    estimators,
-    export,
-    figure,
-    fmu,
-    link,
     maps,
-    new,
-    plant,
-    protocol,
-    replay,
-    report,
     reproduce,
     rivals,
-    run,
-    scenario,
-    scenarios,
-    serial,
-    sides,
-    soak,
     sweep,
     trust,
 )
-from laglab.commands.group import alone, group
 from laglab.errors import LaglabError, RunError, ScenarioError
 from laglab.interrupts import INTERRUPTED, on_interrupt
 from laglab.live import spelled_out

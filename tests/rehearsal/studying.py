@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from laglab.studies.sweep.cells.tasks import Task, done
 from laglab.studies.sweep.loading import load_study
-from laglab.studies.sweep.tasks import Task, done
 from laglab.version import code_version
 
 SMALL = """

@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 import laglab
-from laglab.bench import Report, by_hand
+from laglab.bench import Report
+from laglab.bench.by_hand import Link, seconds_per_echo, tick_sizes
+from laglab.bench.by_hand import loop as by_hand
 from laglab.bench.loop import LINKS
-from laglab.bench.round_trip import Link, seconds_per_echo, tick_sizes
 from laglab.bench.whole_run import loop_scenario
 from laglab_gateway import read_trace
 

@@ -8,7 +8,7 @@ import pytest
 
 from laglab.bench import Report
 from laglab.bench import study as bench
-from laglab.bench.many_by_hand import Situation, many_by_hand
+from laglab.bench.by_hand import Situation, many_by_hand
 from laglab.command import main
 from laglab.results.numbers import at_goal
 from laglab.runs.station_side import station_config

@@ -11,10 +11,10 @@ import laglab
 from laglab.results.nees import nees
 from laglab.scenario import Target
 from laglab.studies.judged import Judge, Stretch, judgements
-from laglab.studies.sweep.cell import Cell
-from laglab.studies.sweep.compute import computed
+from laglab.studies.sweep.cells.cell import Cell
+from laglab.studies.sweep.cells.compute import computed
+from laglab.studies.sweep.cells.ways import how
 from laglab.studies.sweep.loading import load_study
-from laglab.studies.sweep.ways import how
 
 HERE = (0.0, 0.0, 0.0)
 SHORT = """

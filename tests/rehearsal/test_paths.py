@@ -15,7 +15,7 @@ from laglab.results.report import report_html
 from laglab.results.table import summary_rows
 from laglab.scenario import load
 from laglab.studies.many import why_one_by_one
-from laglab.studies.sweep.one_by_one import judged_alone
+from laglab.studies.sweep.cells.one_by_one import judged_alone
 
 Rehearsed = Callable[..., dict[str, Any]]
 HEAD = "time,x,y,theta,v,omega\n"

@@ -7,7 +7,7 @@ import pytest
 
 import laglab
 from laglab.results.columns import Columns, columns_of
-from laglab.results.heard import heard_ticks
+from laglab.results.station import heard_ticks
 from laglab_gateway import ARRIVALS_FILE, CLAIMS_FILE, ROWS
 from laglab_station import read_session
 

@@ -8,7 +8,7 @@ import pytest
 import typer
 
 from laglab.command import app
-from laglab.studies.reproduce import CLAIMS, Trial, Verdict, entries, tried, write_report
+from laglab.studies.reproduce import CLAIMS, Verdict, entries, tried, write_report
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "reproduce.md").read_text(encoding="utf-8")
@@ -50,7 +50,7 @@ def test_the_page_and_its_pictures_are_small():
 
 @pytest.mark.parametrize("name", CHEAP)
 def test_a_trial_comes_to_the_verdict_of_the_page(name):
-    (entry,) = entries([tried(Trial(name))])
+    (entry,) = entries([tried(name)])
     assert entry.spelled == VERDICTS[name]
     if name not in ROUNDED:
         assert " ".join(entry.got.split()) in " ".join(PAGE.split())
@@ -71,7 +71,7 @@ def test_a_verdict_follows_the_numbers_alone():
 
 
 def test_the_page_needs_nothing_else(tmp_path):
-    page, markdown = write_report([tried(Trial("fig4")), tried(Trial("kinematics"))], tmp_path)
+    page, markdown = write_report([tried("fig4"), tried("kinematics")], tmp_path)
     text = page.read_text(encoding="utf-8")
     assert "data:image/png;base64," in text
     assert not re.search(r"(src|href)=\"(?!data:|#)", text)

@@ -16,9 +16,9 @@ import pytest
 
 import laglab as lab
 from laglab.errors import RunError, StudyError
+from laglab.studies.sweep.cells.tasks import grouped
 from laglab.studies.sweep.loading import load_study, shipped_study_names
 from laglab.studies.sweep.plan import planned
-from laglab.studies.sweep.tasks import grouped
 from laglab.studies.workers import Processes, as_done
 
 from .studying import (

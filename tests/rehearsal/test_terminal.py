@@ -16,7 +16,7 @@ import pytest
 
 import laglab
 from laglab.progress import at_a_glance
-from laglab.results.station_glance import StationGlance
+from laglab.results.station import StationGlance
 from laglab.runs.glance import Glance, Glances
 from laglab.scenario import load
 from laglab_gateway import ArrivalRow, ClaimRow, LinkRow, TraceRow

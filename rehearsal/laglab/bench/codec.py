@@ -5,8 +5,8 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 
-from laglab.bench.c_library import c_library, new_folder
 from laglab.bench.harness import Bench, Contest, Turn, microseconds, timed
+from laglab.c_library import c_library, new_folder
 from laglab_protocol.dialect.generated import laglab as pymavlink
 from laglab_protocol.dialect.mavgen import dialect_path, generate
 from laglab_protocol.framing.receiver import Receiver

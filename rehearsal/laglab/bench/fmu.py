@@ -9,9 +9,9 @@ from pathlib import Path
 import fmpy
 import numpy as np
 
-from laglab.bench.c_library import c_library, new_folder
 from laglab.bench.harness import Bench, Contest, Progress, Turn, microseconds, timed
 from laglab.bench.result import Figure, Result
+from laglab.c_library import c_library, new_folder
 from laglab_fmu.archive.contents import c_files
 from laglab_fmu.fleet import Fleet
 from laglab_fmu.models import ROBOT

@@ -5,10 +5,10 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import get_args
 
-from laglab.bench import by_hand
+from laglab.bench.by_hand import Link, seconds_per_echo, tick_sizes
+from laglab.bench.by_hand import loop as by_hand
 from laglab.bench.harness import Bench, Contest, Progress, Turn, microseconds
 from laglab.bench.result import Figure, Result
-from laglab.bench.round_trip import Link, seconds_per_echo, tick_sizes
 from laglab.bench.whole_run import SAMPLE_TIME, lateness, loop_of, loop_scenario, seconds_per_tick
 
 TICK = microseconds("tick")

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from laglab.bench.by_hand import Situation, many_by_hand
 from laglab.bench.fmu import PLAIN, plain_loop
 from laglab.bench.harness import Bench, Contest, Progress, Turn, microseconds, timed
-from laglab.bench.many_by_hand import Situation, many_by_hand
 from laglab.bench.result import Figure, Result
 from laglab.interface import run
 from laglab.runs.station_side import station_config

@@ -9,8 +9,8 @@ from laglab.check import estimator, law, plant
 from laglab.check.checking import checked
 from laglab.check.finding import Finding
 from laglab.check.subject import Kind, kind_of
-from laglab.runs.answers import NoAnswerError, answer_all, asked
-from laglab.runs.child import Tell
+from laglab.runs.processes.answers import NoAnswerError, answer_all, asked
+from laglab.runs.processes.child import Tell
 from laglab.scenario import assignment
 
 PATIENCE = 60.0

@@ -9,7 +9,7 @@ import typer
 from laglab import bench
 from laglab.bench import codec as codec_bench
 from laglab.bench import filter as filter_bench
-from laglab.bench.round_trip import Link
+from laglab.bench.by_hand import Link
 from laglab.commands.group import group
 from laglab.extras import SEEING, STEPPING, require
 from laglab.files import file_place, json_of, write_whole

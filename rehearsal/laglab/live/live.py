@@ -8,8 +8,8 @@ from queue import Queue
 from laglab.errors import LiveError
 from laglab.live.messages import Caller, Line, LiveOrder, Over
 from laglab.live.place import Place
-from laglab.runs.child import Inbox, started
-from laglab.runs.reports import Ended, Failed, Showing
+from laglab.runs.processes.child import Inbox, started
+from laglab.runs.processes.reports import Ended, Failed, Showing
 from laglab.scenario import Scenario
 
 SECRET_BYTES = 16

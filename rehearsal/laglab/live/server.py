@@ -17,8 +17,8 @@ from laglab.live.page import page_html
 from laglab.live.place import Place
 from laglab.live.session import Session, words
 from laglab.live.stream import Known, Piece, event
-from laglab.runs.child import Tell
-from laglab.runs.reports import Failed, Showing
+from laglab.runs.processes.child import Tell
+from laglab.runs.processes.reports import Failed, Showing
 from laglab.scenario import Scenario
 
 PATIENCE = 5.0

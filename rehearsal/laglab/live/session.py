@@ -1,30 +1,22 @@
 """From frames to what the plots need: a station alone has nothing else, and both sides say in words
 what they do by themselves."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from queue import Empty, SimpleQueue
 from threading import Thread
 from typing import TypeVar
 
 from laglab.live.messages import Rows
-from laglab.results.station_record import record_session
+from laglab.results.station import decoded, record_session
 from laglab.scenario import Scenario
 from laglab_gateway import ArrivalRow, ClaimRow, Recorder, TraceRow
-from laglab_protocol import ROBOT_SYSTEM, Frame, Statustext, decode
+from laglab_protocol import ROBOT_SYSTEM, Statustext
 from laglab_station import heard
 
 BEHIND = 30
 """Ticks beyond the link's own delay that a row waits for its measurement."""
 
 T = TypeVar("T")
-
-
-def decoded(frames: Iterable[bytes]) -> Iterator[Frame]:
-    """Those that are whole."""
-    for raw in frames:
-        frame = decode(raw, 0)
-        if isinstance(frame, Frame):
-            yield frame
 
 
 def words(frames: Iterable[bytes]) -> list[str]:

@@ -8,9 +8,9 @@ from typing import NamedTuple
 from msgspec import Struct
 
 from laglab.errors import LaglabError
-from laglab.runs.answers import GaveUpError, NoAnswerError, answer_all, asked
-from laglab.runs.child import Tell
 from laglab.runs.plant import open_plant
+from laglab.runs.processes.answers import GaveUpError, NoAnswerError, answer_all, asked
+from laglab.runs.processes.child import Tell
 from laglab.scenario import Scenario
 from laglab_gateway import Plant, Reading
 

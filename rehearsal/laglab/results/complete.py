@@ -1,6 +1,6 @@
 """From a record and an ending to a run: what every way of making one has in common."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from laglab.errors import RefusedError, RunError
 from laglab.results.columns import Columns, columns_of
-from laglab.results.digest import Digest, digest
+from laglab.results.digest import Digest, digest, followed
 from laglab.results.figures import save_figure
-from laglab.results.following import followed
 from laglab.results.numbers import goal_errors, has_converged, robot_pose
 from laglab.results.run import Kept, Run
 from laglab.results.shadows import (
@@ -24,6 +23,7 @@ from laglab.results.shadows import (
     shadow_rows,
     until_it_fails,
 )
+from laglab.results.station import decoded
 from laglab.results.summary import Errors, Final, Following, Side, Summary, write_summary
 from laglab.runs.ending import Ending
 from laglab.scenario import Scenario
@@ -43,7 +43,7 @@ from laglab_gateway import (
     trace_of,
     trace_pieces,
 )
-from laglab_protocol import EndReason, Frame, decode
+from laglab_protocol import EndReason
 from laglab_station import StationReport, heard, read_session
 
 CONVERGED = "converged", "did not converge"
@@ -90,7 +90,7 @@ def keep(scenario: Scenario, way: Way, ending: Ending, recorder: MemoryRecorder)
         raise nothing_recorded(ending, "the run ended before its first tick was over")
     trace = trace_of(recorder.rows)
     names = scenario.estimator.compare
-    session = list(heard(_frames(recorder.tlog))) if names else []
+    session = list(heard(decoded(raw for _, raw in recorder.tlog))) if names else []
     shadows: dict[str, Shadow] = {}
     compared: dict[str, Errors | None] = {}
     failed: list[str] = []
@@ -122,13 +122,6 @@ def nothing_recorded(ending: Ending, otherwise: str) -> BaseException:
     if not ending.begun:
         return RefusedError(ending.problem)
     return RunError(ending.problem or otherwise)
-
-
-def _frames(records: Iterable[tuple[int, bytes]]) -> Iterable[Frame]:
-    for _, raw in records:
-        frame = decode(raw, 0)
-        assert isinstance(frame, Frame), "we made it ourselves"
-        yield frame
 
 
 def _shadowed(scenario: Scenario, name: str, directory: Path, failed: list[str]) -> Errors | None:

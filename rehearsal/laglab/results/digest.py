@@ -3,6 +3,9 @@
 from collections.abc import Iterable
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from laglab.results.columns import joined
 from laglab.results.numbers import (
     LAST_SECOND,
@@ -11,9 +14,13 @@ from laglab.results.numbers import (
     is_measured,
     last_second,
     loop_estimates,
+    robot_pose,
 )
-from laglab.results.summary import Errors, Seen
+from laglab.results.summary import Errors, Following, Seen
+from laglab.scenario import Target
 from laglab_gateway import Trace
+
+Array = NDArray[np.float64]
 
 
 class Digest(NamedTuple):
@@ -45,3 +52,25 @@ def _last_second(pieces: list[Trace]) -> Trace:
     whole = joined(pieces)
     last = last_second(whole["time"])
     return {name: column[last] for name, column in whole.items()}
+
+
+def followed(pieces: Iterable[Trace], of: Target, rows: int) -> Following | None:
+    """How well the path was followed, over the second half of a trace of so many rows; None where
+    there was none."""
+    if of.path is None:
+        return None
+    first, count, squares, largest = rows // 2, 0, 0.0, 0.0
+    for piece in pieces:
+        distance = _distance(piece, of)[max(first, 0) :]
+        first -= len(piece["tick"])
+        distance = distance[~np.isnan(distance)]
+        count += len(distance)
+        squares += float(distance @ distance)
+        largest = max(largest, float(distance.max(initial=0.0)))
+    return Following(float(np.sqrt(squares / count)), largest) if count else None
+
+
+def _distance(piece: Trace, of: Target) -> Array:
+    off = robot_pose(piece) - of.poses(piece["tick"])
+    distance: Array = np.hypot(off[:, 0], off[:, 1])
+    return distance

@@ -11,6 +11,8 @@ from laglab_gateway import Trace
 AXES = ("x", "y", "theta")
 VARIANCES = ("p_xx", "p_yy", "p_tt")
 """Of these, as tables call them."""
+COVARIANCE = ("p_xx", "p_xy", "p_xt", "p_yy", "p_yt", "p_tt")
+"""Its upper triangle."""
 DISTANCE_BOUND = 0.06
 HEADING_BOUND = 0.05
 LAST_SECOND = 1.0

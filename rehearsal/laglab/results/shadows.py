@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from laglab.files import whole_file
 from laglab.results.columns import Lines, csv_pieces, joined, places
-from laglab.results.numbers import AXES, RmsError, deviation
+from laglab.results.numbers import AXES, COVARIANCE, RmsError, deviation
 from laglab.results.summary import Errors
 from laglab.runs.station_side import shadow_config
 from laglab.scenario import Scenario
@@ -17,7 +17,7 @@ from laglab_control import PluginFailedError
 from laglab_gateway import Trace, format_row
 from laglab_station import SessionTick, ShadowRow, shadow
 
-COLUMNS = ("tick", "x", "y", "theta", "p_xx", "p_xy", "p_xt", "p_yy", "p_yt", "p_tt")
+COLUMNS = ("tick", *AXES, *COVARIANCE)
 """Of a shadow's file: the tick, its estimate and the upper triangle of its covariance."""
 
 Shadow = dict[str, NDArray[np.float64]]

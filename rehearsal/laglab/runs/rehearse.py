@@ -10,14 +10,14 @@ from time import monotonic
 from typing import Literal
 
 from laglab.live import fed
-from laglab.runs.child import LOOK_UP, Child, Inbox, Letter, started
 from laglab.runs.clock import LoopClock
 from laglab.runs.ending import Ending
 from laglab.runs.errors import CUT_SHORT, SIDE_ERRORS
 from laglab.runs.glance import Told, watched
 from laglab.runs.inline import InlineLink
 from laglab.runs.pauses import short_pauses
-from laglab.runs.reports import (
+from laglab.runs.processes.child import LOOK_UP, Child, Inbox, Letter, started
+from laglab.runs.processes.reports import (
     Answered,
     Ended,
     Failed,
@@ -105,7 +105,7 @@ def rehearse_apart(
             scenario.to_toml(), url, str(directory), setup.plant, key, plant_key, setup.live
         )
         inbox: Inbox = Queue()
-        with started("gateway", "laglab.runs.sides:robot_side", order, inbox) as gateway:
+        with started("gateway", "laglab.runs.processes.sides:robot_side", order, inbox) as gateway:
             return _Rehearsal(gateway, inbox, scenario, key, progress).follow()
 
 
@@ -150,7 +150,7 @@ class _Rehearsal:
         if address is None:
             return self._summed_up()
         order = Order(self._scenario.to_toml(), far_end(address), key=self._key)
-        with started("controller", "laglab.runs.sides:station_side", order, self._inbox):
+        with started("controller", "laglab.runs.processes.sides:station_side", order, self._inbox):
             try:
                 self._read_on(self._scenario.silence_timeout + NOTICE_SECONDS)
             except KeyboardInterrupt:

@@ -7,7 +7,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from laglab.bench.c_library import new_folder
+from laglab.c_library import new_folder
 from laglab.selftest.receivers import message_of
 from laglab_protocol import (
     ROBOT_COMPONENT,

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
-from laglab.bench.c_library import c_library, new_folder
+from laglab.c_library import c_library, new_folder
 from laglab_protocol import Frame, Message, Receiver, message_type
 from laglab_protocol.dialect.generated import laglab as pymavlink
 from laglab_protocol.dialect.mavgen import dialect_path, generate

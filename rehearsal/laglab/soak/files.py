@@ -58,20 +58,13 @@ def _unreadable(folder: Path) -> Iterator[str]:
         yield f"cannot be read: {error}"
 
 
-def verdict_of(folder: Path) -> str:
-    """Of its summary; empty when there is none."""
+def told_of(folder: Path) -> tuple[str, int]:
+    """The verdict and the ticks of its summary; nothing when there is none."""
     try:
-        return open_run(folder).summary.verdict
+        summary = open_run(folder).summary
     except LaglabError:
-        return ""
-
-
-def ticks_of(folder: Path) -> int:
-    """How many its summary tells of."""
-    try:
-        return open_run(folder).summary.ticks
-    except LaglabError:
-        return 0
+        return "", 0
+    return summary.verdict, summary.ticks
 
 
 def left_in(folder: Path, temporary: Path) -> Iterator[str]:

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from time import monotonic
 
-from laglab.soak.files import faults_of, left_in, ticks_of, verdict_of
+from laglab.soak.files import faults_of, left_in, told_of
 from laglab.soak.played import Part, Sample
 from laglab.soak.system import look
 from laglab.soak.turn import Side, Signal
@@ -110,21 +110,22 @@ class Process:
 
     def part(self) -> Part:
         """What became of it, once it has ended."""
-        last = self._recorded()
-        met = self.met
+        last, met = self._recorded(), self.met
+        exit_code = self._process.wait()
+        verdict, ticks = told_of(self.folder)
         return Part(
             side=self.side,
-            exit_code=self._process.wait(),
+            exit_code=exit_code,
             said=self.said,
             met=met,
             samples=tuple(sample for recorded, sample in self._samples if recorded < last),
             most_memory=self._most_memory,
             signal=self._signal,
             dismissed=self.sent_home,
-            verdict=verdict_of(self.folder),
+            verdict=verdict,
             faults=tuple(faults_of(self.folder, self._signal == "SIGKILL")) if met else (),
             left=tuple(left_in(self.folder, self._temporary)),
-            ticks=ticks_of(self.folder),
+            ticks=ticks,
         )
 
     def _recorded(self) -> int:

@@ -13,9 +13,9 @@ from typing import Any, Protocol, Self, TypeVar
 from msgspec import Struct
 
 from laglab.errors import RunError
-from laglab.runs.answers import answer_all
-from laglab.runs.child import LOOK_UP, Child, Inbox, Tell, started
-from laglab.runs.reports import Computed, Ended, Failed
+from laglab.runs.processes.answers import answer_all
+from laglab.runs.processes.child import LOOK_UP, Child, Inbox, Tell, started
+from laglab.runs.processes.reports import Computed, Ended, Failed
 
 Job = TypeVar("Job")
 Answer = TypeVar("Answer")

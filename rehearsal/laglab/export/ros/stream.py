@@ -33,6 +33,7 @@ from laglab.export.ros.topics import (
 )
 from laglab.export.tables import Table, tables
 from laglab.results.columns import Columns
+from laglab.results.numbers import AXES, COVARIANCE
 from laglab.results.run import Run
 from laglab_gateway import Trace
 
@@ -41,9 +42,7 @@ LATEST = 65_536
 """Ticks after which no measurement comes any more: the link's longest delay."""
 ROUNDING = 1e-6
 """Seconds: times are sums of doubles."""
-AXES = ("x", "y", "theta")
 MEASURED = ("x_meas", "y_meas", "theta_meas")
-COVARIANCE = ("p_xx", "p_xy", "p_xt", "p_yy", "p_yt", "p_tt")
 APPLIED_SPEEDS = ("v", "omega")
 SENT_SPEEDS = ("v_sent", "omega_sent")
 

@@ -8,10 +8,11 @@ import numpy as np
 
 from laglab.extras import CAPTURES, require
 from laglab.link.errors import LinkFileError
-from laglab.link.importing.how import NOT_KNOWN_WHICH, How, halves
-from laglab.link.measured import Flow, MeasuredLink
-from laglab.link.resampling import known_everywhere
+from laglab.link.importing.how import How, by_halves, halves
+from laglab.link.measured import MeasuredLink
 from laglab_protocol import Command, Frame, Tick, TlogError, decode, read_tlog
+
+COARSE = "Its times are whole ticks: nothing finer is known, and within a tick is 0."
 
 
 class Heard(NamedTuple):
@@ -74,16 +75,7 @@ def answers(heard: Iterable[Heard], how: How, name: str) -> MeasuredLink:
     interval = float(np.median(np.diff(sent) / np.diff(ticks))) if len(ticks) > 1 else 0.0
     if interval <= 0:
         raise LinkFileError(f"{name}: its ticks have all the same time")
-    lost = np.isnan(took)
-    notes = [halves("From a tick to its answer, the station's thinking included")]
-    notes += [NOT_KNOWN_WHICH] if lost.any() else []
-    if np.allclose(took[~lost] / interval, np.round(took[~lost] / interval), atol=1e-3):
-        notes.append("Its times are whole ticks: nothing finer is known, and within a tick is 0.")
-    return MeasuredLink(
-        Flow(sent - sent[0], took / 2, how.sizes.command),
-        Flow(
-            sent - sent[0], known_everywhere(took, np.zeros_like(lost)) / 2, how.sizes.measurement
-        ),
-        interval,
-        tuple(notes),
-    )
+    ticks_taken = took[~np.isnan(took)] / interval
+    coarse = np.allclose(ticks_taken, np.round(ticks_taken), atol=1e-3)
+    note = halves("From a tick to its answer, the station's thinking included")
+    return by_halves(sent - sent[0], took, interval, how, note, *([COARSE] if coarse else []))

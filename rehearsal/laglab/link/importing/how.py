@@ -3,7 +3,11 @@
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
+from laglab.link.measured import Array, Flow, MeasuredLink
 from laglab.link.probing import Sizes
+from laglab.link.resampling import known_everywhere
 
 TICK = 0.01
 """[s]"""
@@ -20,6 +24,19 @@ class How(NamedTuple):
     """[s] So far the two machines' clocks agree; None: that is not known."""
     back: Path | None = None
     """The measurements' direction, where a file has only one."""
+
+
+def by_halves(
+    sent: Array, took: Array, interval: float, how: How, note: str, *more: str
+) -> MeasuredLink:
+    """Of round trips, NaN where no answer came: half of each is each way's."""
+    lost = np.isnan(took)
+    return MeasuredLink(
+        Flow(sent, took / 2, how.sizes.command),
+        Flow(sent, known_everywhere(took, np.zeros_like(lost)) / 2, how.sizes.measurement),
+        interval,
+        (note, *([NOT_KNOWN_WHICH] if lost.any() else []), *more),
+    )
 
 
 def halves(note: str) -> str:

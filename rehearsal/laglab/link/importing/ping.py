@@ -7,9 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from laglab.link.errors import LinkFileError
-from laglab.link.importing.how import NOT_KNOWN_WHICH, How, halves
-from laglab.link.measured import Array, Flow, MeasuredLink
-from laglab.link.resampling import known_everywhere
+from laglab.link.importing.how import How, by_halves, halves
+from laglab.link.measured import Array, MeasuredLink
 from laglab_gateway import MOST_TICKS
 
 LONGEST_LINE = 400
@@ -49,20 +48,14 @@ def read_ping(text: str, how: How, name: str) -> MeasuredLink:
     lines = _lines(text)
     told = list(_told(lines))
     took = _by_number(told, lines, name) if told else _in_order(lines)
-    lost = np.isnan(took)
-    if lost.all():
+    if np.isnan(took).all():
         raise LinkFileError(
             f"{name}: ping had no answer at all: nothing is known of the link but that it was down"
         )
     interval, known = _interval(told, lines, len(took))
     sent = interval * np.arange(len(took), dtype=np.float64)
     note = halves("ping") + ("" if known else " It is taken to have pinged once a second.")
-    return MeasuredLink(
-        Flow(sent, took / 2, how.sizes.command),
-        Flow(sent, known_everywhere(took, np.zeros_like(lost)) / 2, how.sizes.measurement),
-        interval,
-        (note, *([NOT_KNOWN_WHICH] if lost.any() else [])),
-    )
+    return by_halves(sent, took, interval, how, note)
 
 
 def _lines(text: str) -> list[str]:

@@ -8,7 +8,6 @@ from laglab.studies.consistency.judging import (
     judged,
     nth,
     samples,
-    unpacked,
     verdict,
 )
 from laglab.studies.consistency.report import consistency_table, draw_consistency
@@ -23,6 +22,5 @@ __all__ = [
     "judged",
     "nth",
     "samples",
-    "unpacked",
     "verdict",
 ]

@@ -129,12 +129,6 @@ class Job(Struct, frozen=True):
     estimators: tuple[str, ...]
 
 
-class Judged(Struct, frozen=True):
-    """What became of it: a `Sample` of each filter, its columns side by side."""
-
-    samples: dict[str, bytes]
-
-
 def samples(
     scenario: Scenario, estimators: Sequence[str], seeds: int, workers: int
 ) -> Iterator[dict[str, Sample]]:
@@ -143,18 +137,16 @@ def samples(
     Raises: RunError, when a worker fails or dies.
     """
     jobs = [Job(nth(scenario, number).to_toml(), tuple(estimators)) for number in range(seeds)]
-    for answer in shared_out(judge, jobs, workers):
-        yield {name: unpacked(table) for name, table in answer.samples.items()}
+    return shared_out(judge, jobs, workers)
 
 
-def judge(job: Job) -> Judged:
+def judge(job: Job) -> dict[str, Sample]:
     """In a worker: one loop with the scenario's own filter, and the others beside it."""
     scenario = Scenario.from_toml(job.scenario)
     said: dict[str, list[Known]] = {}
     others = tuple(name for name in job.estimators if name != scenario.estimator.kind)
     done = run(scenario, controller=partial(Overhearing, others=others, said=said))
-    tables = {name: np.column_stack(judged(heard, done.trace)) for name, heard in said.items()}
-    return Judged({name: table.tobytes() for name, table in tables.items()})
+    return {name: judged(heard, done.trace) for name, heard in said.items()}
 
 
 def judged(said: Sequence[Known], trace: Trace) -> Sample:
@@ -167,12 +159,6 @@ def judged(said: Sequence[Known], trace: Trace) -> Sample:
     variances = np.diagonal(P, axis1=1, axis2=2)
     ahead_error = pose_difference(ahead, there)
     return Sample(error, variances, nees(error, P), nis, nees(ahead_error, P_ahead))
-
-
-def unpacked(table: bytes) -> Sample:
-    """What `judge` packed."""
-    columns = np.frombuffer(table).reshape(-1, 9)
-    return Sample(columns[:, :3], columns[:, 3:6], *columns[:, 6:].T)
 
 
 def verdict(name: str, of_seeds: Sequence[Sample], measurement_delay: int) -> Verdict:

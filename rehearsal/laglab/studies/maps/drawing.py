@@ -33,9 +33,7 @@ def draw_study(
     Raises: StudyError, when there is no such key or column, or nothing to draw along.
     """
     chosen = layout(runs, x, y)
-    told = [Told.by(runs, column) for column in values or MEASURES]
-    if not values:
-        told = [each for each in told if each.of.column == ALWAYS or each.says_something]
+    told = [Told.by(runs, column) for column in values] or telling(runs)
     into = sorted_into(runs, chosen)
     maps = [Map(each.of, fields(each, into)) for each in told]
     if chosen.y is None:
@@ -44,6 +42,12 @@ def draw_study(
         figure = draw_maps(chosen, into, maps, margins(runs, chosen, into))
     figure.suptitle(_title(runs, chosen))
     return figure
+
+
+def telling(runs: StudyRuns) -> list[Told]:
+    """What is drawn when nothing else is asked for."""
+    told = (Told.by(runs, column) for column in MEASURES)
+    return [each for each in told if each.of.column == ALWAYS or each.says_something]
 
 
 def margins(runs: StudyRuns, chosen: Layout, into: Sorted) -> list[Plane]:

@@ -24,10 +24,10 @@ from laglab.results.report.page import (
     text_of,
 )
 from laglab.results.report.plots import dressed, heading
-from laglab.studies.maps.drawing import ALWAYS, MEASURES
+from laglab.studies.maps.drawing import telling
 from laglab.studies.maps.grid import Field, Sorted, fields, sorted_into
 from laglab.studies.maps.labels import in_cell, key_label, panel_label, value_label
-from laglab.studies.maps.measures import Estimate, Measure, Told
+from laglab.studies.maps.measures import Estimate, Measure
 from laglab.studies.maps.reading import read_runs
 from laglab.studies.maps.runs import Layout, StudyRuns, layout
 from laglab.studies.sweep.loading import to_toml
@@ -51,11 +51,9 @@ def save_study_page(study: Study, folder: Path, lines: Sequence[str], path: Path
 def _html(study: Study, runs: StudyRuns, lines: Sequence[str]) -> str:
     by = layout(runs)
     into = sorted_into(runs, by)
-    told = [Told.by(runs, column) for column in MEASURES]
-    told = [each for each in told if each.of.column == ALWAYS or each.says_something]
     maps: dict[str, Model] = {}
     rows: list[tuple[str, list[str]]] = []
-    for each in told:
+    for each in telling(runs):
         names = [f"{each.of.column} {number}" for number in range(len(into.panels))]
         drawn = _maps(each.of, fields(each, into), by, into)
         maps |= dict(zip(names, drawn, strict=True))

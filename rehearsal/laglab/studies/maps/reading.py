@@ -13,7 +13,7 @@ def read_runs(folder: Path) -> StudyRuns:
 
     Raises: NoRunError, StudyError, ScenarioError.
     """
-    from laglab.studies.sweep.compute import column_value  # whoever draws nothing does without
+    from laglab.studies.sweep.cells.compute import column_value  # needs pyarrow
     from laglab.studies.sweep.interface import open_study
 
     result = open_study(folder)

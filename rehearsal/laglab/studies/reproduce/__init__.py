@@ -1,7 +1,7 @@
 """The paper's figures and claims, each with what a run says to it."""
 
 from laglab.studies.reproduce.claim import Claim, Evidence, Finding, Verdict
-from laglab.studies.reproduce.claims import CLAIMS, Trial, tried, trying
+from laglab.studies.reproduce.claims import CLAIMS, tried, trying
 from laglab.studies.reproduce.entry import Entry, entries
 from laglab.studies.reproduce.report import write_report
 
@@ -11,7 +11,6 @@ __all__ = [
     "Entry",
     "Evidence",
     "Finding",
-    "Trial",
     "Verdict",
     "entries",
     "tried",

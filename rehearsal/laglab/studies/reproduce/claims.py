@@ -5,8 +5,6 @@ To add one, put it into the table of its file.
 
 from collections.abc import Iterator, Sequence
 
-from msgspec import Struct
-
 from laglab.studies.reproduce import figures, filters, law, many
 from laglab.studies.reproduce.claim import Claim, Finding
 from laglab.studies.workers import shared_out
@@ -20,18 +18,12 @@ LONGEST = ("starts-noise", "covariance", "starts", "prior", "prior-below-r", "op
 """Begun first, so that no worker is left with one at the end."""
 
 
-class Trial(Struct, frozen=True):
-    """A claim to be tried."""
-
-    name: str
-
-
 def trying(names: Sequence[str], workers: int) -> Iterator[Finding]:
     """Each of the claims, as they are done. Raises RunError."""
     ordered = sorted(names, key=lambda name: (name not in LONGEST, names.index(name)))
-    return shared_out(tried, [Trial(name) for name in ordered], workers)
+    return shared_out(tried, ordered, workers)
 
 
-def tried(trial: Trial) -> Finding:
+def tried(name: str) -> Finding:
     """In a worker: one claim."""
-    return Finding(trial.name, CLAIMS[trial.name].experiment())
+    return Finding(name, CLAIMS[name].experiment())

@@ -8,7 +8,7 @@ import numpy as np
 from msgspec.structs import astuple
 
 from laglab.interface import run
-from laglab.results.numbers import goal_errors, robot_pose
+from laglab.results.numbers import AXES, goal_errors, last_second, robot_pose
 from laglab.results.run import Run
 from laglab.studies.reproduce.claim import Claim, Evidence, Numbers
 from laglab.studies.reproduce.showing import M, N, png
@@ -22,7 +22,7 @@ def ended(done: Run) -> dict[str, float]:
     """Over the last second."""
     trace = done.trace
     rho, theta_error = goal_errors(robot_pose(trace), done.scenario.goal)
-    second = trace["time"] >= trace["time"][-1] - 1
+    second = last_second(trace["time"])
     return {
         "rho": float(rho[second].max()),
         "theta": float(np.abs(theta_error[second]).max()),
@@ -51,7 +51,7 @@ def against_the_ekf() -> Evidence:
         np.array([astuple(of) for one in runs if (of := one.summary.compare[kind])])
         for kind in ("popf", "ekf")
     )
-    least = dict(zip(("x", "y", "theta"), (ekf / popf).min(axis=0).tolist(), strict=True))
+    least = dict(zip(AXES, (ekf / popf).min(axis=0).tolist(), strict=True))
     return Evidence({**least, "seeds": len(SEEDS)}, png(runs[0].figure()))
 
 

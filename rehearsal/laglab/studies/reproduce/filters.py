@@ -7,9 +7,9 @@ from functools import partial
 import numpy as np
 
 from laglab.interface import run
-from laglab.results.numbers import loop_estimates, shadow_estimates
+from laglab.results.numbers import loop_estimates, measurements, shadow_estimates
 from laglab.scenario import load
-from laglab.studies.consistency import Job, chi_square_bounds, judge, nth, unpacked, verdict
+from laglab.studies.consistency import Job, chi_square_bounds, judge, nth, verdict
 from laglab.studies.errata import VARIANTS, Variant, cost
 from laglab.studies.reproduce.claim import Claim, Evidence, Verdict, never
 from laglab_control import Erratum, Popf, RobotModel, constant_delay, replay
@@ -20,7 +20,6 @@ CHANCE = 1e-3
 CORRECTED = VARIANTS[0]
 P_0 = 1e-2
 """[m², rad²] As large as R."""
-MEASURED = ("x_meas", "y_meas", "theta_meas")
 MOVED = 100
 """The tick at which a measurement is moved."""
 
@@ -36,16 +35,13 @@ def first_felt() -> Evidence:
     """When a measurement first shows in the estimate: one of the record is moved by a metre."""
     done = run("fig8")
     m = done.scenario.link.measurement_delay
-    x, y, theta, v, omega = (done.trace[name] for name in (*MEASURED, "v", "omega"))
-    z, inputs = np.stack([x, y, theta], axis=1), np.stack([v, omega], axis=1)[:-1]
+    trace, start = done.trace, np.array(done.scenario.start)
+    z, inputs = measurements(trace), np.stack([trace["v"], trace["omega"]], axis=1)[:-1]
     moved = z.copy()
     moved[MOVED, 0] += 1.0
     P = done.scenario.estimator.initial_covariance * np.eye(3)
     told = [
-        replay(
-            Popf(RobotModel()), np.array(done.scenario.start), P, inputs, constant_delay(each, m)
-        )
-        for each in (z, moved)
+        replay(Popf(RobotModel()), start, P, inputs, constant_delay(each, m)) for each in (z, moved)
     ]
     differ = np.abs(told[1].estimates - told[0].estimates).max(axis=1) > 0
     return Evidence({"later": float(np.argmax(differ) - MOVED), "m": float(m)})
@@ -69,9 +65,9 @@ def claimed_covariance() -> Evidence:
     scenario = load("lab", {"estimator.initial_covariance": P_0, "estimator.kind": "delayed-ekf"})
     names = ("popf", "popf-exact")
     jobs = [Job(nth(scenario, number).to_toml(), names) for number in range(SEEDS)]
-    told = [judge(job).samples for job in jobs]
+    told = [judge(job) for job in jobs]
     m = scenario.link.measurement_delay
-    popf, exact = (verdict(name, [unpacked(each[name]) for each in told], m) for name in names)
+    popf, exact = (verdict(name, [each[name] for each in told], m) for name in names)
     high = chi_square_bounds(SEEDS)[1]
     return Evidence(
         {

@@ -19,12 +19,8 @@ def write_report(findings: Sequence[Finding], folder: Path) -> tuple[Path, Path]
     pictures = folder_place("the folder", folder / NAME)
     for entry in of:
         if entry.picture:
-            _write(pictures / f"{entry.claim.name}.png", entry.picture)
+            write_whole(pictures / f"{entry.claim.name}.png", entry.picture)
     files = folder / f"{NAME}.html", folder / f"{NAME}.md"
     for file, text in zip(files, (page(of), markdown(of, NAME)), strict=True):
-        _write(file, text.encode())
+        write_whole(file, text)
     return files
-
-
-def _write(path: Path, content: bytes) -> None:
-    write_whole(path, content)

@@ -11,8 +11,8 @@ import numpy as np
 from laglab.scenario import Overrides, load
 from laglab.studies.judged import joined
 from laglab.studies.maps import StudyRuns, runs_of
+from laglab.studies.sweep.cells.ways import judged
 from laglab.studies.sweep.study import Study
-from laglab.studies.sweep.ways import judged
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

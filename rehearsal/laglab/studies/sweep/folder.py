@@ -16,8 +16,8 @@ import pyarrow.parquet as pq
 
 from laglab.errors import NoRunError
 from laglab.files import BESIDE, folder_place, write_whole
-from laglab.studies.sweep.cell import Cell
-from laglab.studies.sweep.compute import DESCRIPTION
+from laglab.studies.sweep.cells.cell import Cell
+from laglab.studies.sweep.cells.compute import DESCRIPTION
 from laglab.studies.sweep.loading import study_of, to_toml
 from laglab.studies.sweep.study import Study
 

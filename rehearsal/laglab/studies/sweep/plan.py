@@ -10,9 +10,9 @@ from laglab.runs.errors import SIDE_ERRORS
 from laglab.runs.plant import check_plant
 from laglab.scenario.problems import first_problem
 from laglab.scenario.tables.plant import PlantTable
-from laglab.studies.sweep.cell import Cell
+from laglab.studies.sweep.cells.cell import Cell
+from laglab.studies.sweep.cells.ways import How, how, seconds
 from laglab.studies.sweep.study import Study
-from laglab.studies.sweep.ways import How, how, seconds
 
 if TYPE_CHECKING:
     from laglab.studies.sweep.folder import Folder

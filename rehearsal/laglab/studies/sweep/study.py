@@ -13,7 +13,7 @@ from laglab.errors import StudyError
 from laglab.scenario import Scenario, changed
 from laglab.scenario.explain import spelled
 from laglab.scenario.model import FILES
-from laglab.studies.sweep.cell import Cell
+from laglab.studies.sweep.cells.cell import Cell
 from laglab.version import code_version
 from laglab_control import FAR
 from laglab_control.plugins import Group, source_of

@@ -8,14 +8,14 @@ from tempfile import mkdtemp
 
 from laglab.errors import LaglabError, RunError
 from laglab.progress import progress_of_study
-from laglab.studies.sweep.cell import Cell
+from laglab.studies.sweep.cells.cell import Cell
+from laglab.studies.sweep.cells.tasks import done, grouped
+from laglab.studies.sweep.cells.ways import seconds
 from laglab.studies.sweep.folder import Folder
 from laglab.studies.sweep.loading import load_study
 from laglab.studies.sweep.plan import check_size, planned
 from laglab.studies.sweep.result import StudyResult
 from laglab.studies.sweep.study import Study
-from laglab.studies.sweep.tasks import done, grouped
-from laglab.studies.sweep.ways import seconds
 from laglab.studies.workers import Executor, Processes, as_done
 
 AHEAD = 512

@@ -9,7 +9,7 @@ from typing import Literal
 
 from msgspec import Struct
 
-from laglab.runs.child import Tell, started
+from laglab.runs.processes.child import Tell, started
 from laglab_protocol import Command, Estimate, Measurement, Message, Sender, Tick
 
 POSE = (0.1, 0.1, 0.1)
@@ -64,7 +64,7 @@ def _over_udp(sizes: Sizes, ticks: int) -> float:
         robot.bind(("127.0.0.1", 0))
         host, port = robot.getsockname()
         order = EchoOrder(host, port, sizes, ticks)
-        with started("echo", "laglab.bench.round_trip:udp_station", order, Queue()):
+        with started("echo", "laglab.bench.by_hand.echo:udp_station", order, Queue()):
             _, station = robot.recvfrom(1)
             robot.connect(station)
             return _call(robot.send, robot.recv, sizes, ticks)
@@ -85,7 +85,7 @@ def _over_pty(sizes: Sizes, ticks: int) -> float:
     tty.setraw(slave)
     try:
         order = EchoOrder(os.ttyname(slave), 0, sizes, ticks)
-        with started("echo", "laglab.bench.round_trip:pty_station", order, Queue()):
+        with started("echo", "laglab.bench.by_hand.echo:pty_station", order, Queue()):
             os.read(robot, 1)
             return _call(
                 lambda data: os.write(robot, data), lambda size: os.read(robot, size), sizes, ticks

@@ -1,13 +1,12 @@
 """A run at a glance as its station sees it, from the frames that went by last."""
 
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
-from laglab.results.heard import heard_ticks
+from laglab.results.station.heard import decoded, heard_ticks
 from laglab.runs.glance import Glance, Glances
 from laglab.scenario import Scenario
 from laglab_gateway import TraceRow
-from laglab_protocol import Frame, decode
 from laglab_station import SessionTick, heard
 
 KEPT = 100
@@ -28,17 +27,13 @@ class StationGlance:
 
     def now(self) -> Glance | None:
         """At the last tick heard; None before the first."""
-        for tick, arrivals, claims in heard_ticks(heard(self._decoded()), self._sample_time, 0):
+        session = heard(decoded(self._frames))
+        for tick, arrivals, claims in heard_ticks(session, self._sample_time, 0):
             self._glances.arrivals(arrivals)
             if claims:
                 self._glances.claims(claims)
             self._glances.row(self._row(tick))
         return self._glances.now(knows_losses=False)
-
-    def _decoded(self) -> Iterator[Frame]:
-        for raw in self._frames:
-            if isinstance(frame := decode(raw, 0), Frame):
-                yield frame
 
     def _row(self, tick: SessionTick) -> TraceRow:
         pose = tick.estimate.pose if tick.estimate else (None, None, None)

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from laglab.scenario.explain import spelled
 from laglab.studies.judged import Judgements
-from laglab.studies.sweep.cell import Cell
-from laglab.studies.sweep.ways import judged
+from laglab.studies.sweep.cells.cell import Cell
+from laglab.studies.sweep.cells.ways import judged
 
 DESCRIPTION = b"laglab.cell"
 """Where the table's metadata tell, as JSON, what the cell is."""

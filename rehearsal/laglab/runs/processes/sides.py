@@ -4,12 +4,12 @@ from contextlib import closing
 from pathlib import Path
 
 from laglab.live import fed
-from laglab.runs.child import Tell
 from laglab.runs.clock import LoopClock
 from laglab.runs.errors import CUT_SHORT, SIDE_ERRORS
 from laglab.runs.glance import watched
 from laglab.runs.pauses import short_pauses
-from laglab.runs.reports import (
+from laglab.runs.processes.child import Tell
+from laglab.runs.processes.reports import (
     Answered,
     Failed,
     Finished,

@@ -10,7 +10,7 @@ from laglab.errors import RunError
 from laglab.interface import run
 from laglab.scenario import Scenario
 from laglab.studies.judged import Array, Judgements, joined, judged_run
-from laglab.studies.sweep.cell import Cell
+from laglab.studies.sweep.cells.cell import Cell
 from laglab_control import Applied, Control, Controller, Echo, Measured
 
 ENDINGS = ("completed", "diverged")

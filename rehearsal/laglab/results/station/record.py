@@ -3,8 +3,8 @@
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
-from laglab.results.heard import heard_ticks
-from laglab.results.station_glance import StationGlance
+from laglab.results.station.glance import StationGlance
+from laglab.results.station.heard import heard_ticks
 from laglab_gateway import TLOG_FILE, FileRecorder, Recorder, TraceRow
 from laglab_station import Onlooker, SessionTick, read_session
 

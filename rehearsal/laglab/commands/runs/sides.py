@@ -7,7 +7,6 @@ from typing import Annotated
 
 import typer
 
-from laglab.commands.live import LiveOption, OpenOption, shown_live
 from laglab.commands.on_scenario import on_scenario
 from laglab.commands.options import (
     ForceOption,
@@ -17,14 +16,14 @@ from laglab.commands.options import (
     PlantOption,
     ReportOption,
 )
-from laglab.commands.verdict import conclude
+from laglab.commands.runs.live import LiveOption, OpenOption, shown_live
+from laglab.commands.runs.verdict import conclude
 from laglab.extras import SEEING, STEPPING, require
 from laglab.live import fed, watched_station
 from laglab.progress import progress_of
 from laglab.results.complete import Way
 from laglab.results.place import place
-from laglab.results.station_glance import StationGlance
-from laglab.results.station_record import StationRecord
+from laglab.results.station import StationGlance, StationRecord
 from laglab.runs.alone import answer_alone, serve_alone
 from laglab.runs.clock import LoopClock
 from laglab.runs.glance import Told, watched

@@ -6,7 +6,6 @@ from typing import Annotated
 
 import typer
 
-from laglab.commands.live import LiveOption, OpenOption, shown_live
 from laglab.commands.on_scenario import on_scenario
 from laglab.commands.options import (
     ForceOption,
@@ -16,7 +15,8 @@ from laglab.commands.options import (
     PlantOption,
     ReportOption,
 )
-from laglab.commands.verdict import conclude
+from laglab.commands.runs.live import LiveOption, OpenOption, shown_live
+from laglab.commands.runs.verdict import conclude
 from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, SEEING, require
 from laglab.progress import progress_of

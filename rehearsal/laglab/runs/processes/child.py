@@ -5,7 +5,7 @@ child's standard input, a line each, which stays open: its end, whatever became 
 child to end in order. Reports come out on its standard output, a line each; what else is printed
 there goes to standard error.
 
-    python -m laglab.runs.child MODULE:FUNCTION once|again
+    python -m laglab.runs.processes.child MODULE:FUNCTION once|again
 """
 
 import importlib
@@ -25,7 +25,7 @@ import msgspec
 from msgspec import Struct
 
 from laglab.interrupts import INTERRUPTED, on_interrupt
-from laglab.runs.reports import Ended, Report
+from laglab.runs.processes.reports import Ended, Report
 
 LAST_CHANCE = 2.0
 """[s] A child that was asked to end is ended after so long."""
@@ -76,7 +76,7 @@ def started(
     `again`: with each order that comes after it, too.
     """
     process = subprocess.Popen(
-        [sys.executable, "-m", "laglab.runs.child", target, "again" if again else "once"],
+        [sys.executable, "-m", "laglab.runs.processes.child", target, "again" if again else "once"],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         start_new_session=True,  # a Ctrl-C in the terminal is for us, who end it

@@ -8,9 +8,9 @@ import pyarrow.parquet as pq
 from msgspec import Struct
 
 from laglab.errors import RunError
-from laglab.studies.sweep.cell import Cell
-from laglab.studies.sweep.compute import computed
-from laglab.studies.sweep.ways import crowd, seconds
+from laglab.studies.sweep.cells.cell import Cell
+from laglab.studies.sweep.cells.compute import computed
+from laglab.studies.sweep.cells.ways import crowd, seconds
 from laglab.version import code_version
 
 WORTHWHILE = 0.1

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 from laglab.studies.judged import Judgements
 from laglab.studies.many import is_ideal, why_one_by_one
-from laglab.studies.sweep.all_at_once import all_at_once
-from laglab.studies.sweep.cell import Cell
-from laglab.studies.sweep.one_by_one import one_by_one
+from laglab.studies.sweep.cells.all_at_once import all_at_once
+from laglab.studies.sweep.cells.cell import Cell
+from laglab.studies.sweep.cells.one_by_one import one_by_one
 
 TICK_ALONE = 160e-6
 """[s] A tick of a run by itself takes about so long, with both sides and the bytes between them."""

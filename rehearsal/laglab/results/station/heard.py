@@ -4,7 +4,15 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from laglab_gateway import ArrivalRow, ClaimRow, claimed
+from laglab_protocol import Frame, decode
 from laglab_station import SessionTick
+
+
+def decoded(frames: Iterable[bytes]) -> Iterator[Frame]:
+    """Those that are whole."""
+    for raw in frames:
+        if isinstance(frame := decode(raw, 0), Frame):
+            yield frame
 
 
 class HeardTick(NamedTuple):

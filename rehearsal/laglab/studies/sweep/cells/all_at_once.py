@@ -9,8 +9,8 @@ from laglab.scenario import Scenario
 from laglab.scenario.tables.link import LinkTable
 from laglab.studies.judged import Judge, Judgements, Stretch
 from laglab.studies.many import Ticks, is_ideal, run_many
-from laglab.studies.sweep.cell import Cell
-from laglab.studies.sweep.one_by_one import judged_alone
+from laglab.studies.sweep.cells.cell import Cell
+from laglab.studies.sweep.cells.one_by_one import judged_alone
 
 
 def all_at_once(cells: Sequence[Cell]) -> list[Judgements]:

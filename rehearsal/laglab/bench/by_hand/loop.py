@@ -20,11 +20,11 @@ import fmpy
 import numpy as np
 from fmpy.fmi2 import FMU2Slave
 
-from laglab.bench.round_trip import Link
+from laglab.bench.by_hand.echo import Link
 from laglab.bench.whole_run import Loop, loop_of
 from laglab.errors import RunError
-from laglab.runs.child import Inbox, Tell, started
-from laglab.runs.reports import Listening, Order, Progress
+from laglab.runs.processes.child import Inbox, Tell, started
+from laglab.runs.processes.reports import Listening, Order, Progress
 from laglab.scenario import Scenario
 from laglab_control import Controller, Echo, Measured
 from laglab_fmu import RobotParameters, fmu_path
@@ -41,12 +41,12 @@ def seconds_per_tick(over: Link, scenario: Scenario, directory: Path) -> float:
     told = scenario.to_toml()
     inbox: Inbox = Queue()
     order = Order(told, over, str(directory))
-    with started("robot", "laglab.bench.by_hand:robot_process", order, inbox):
+    with started("robot", "laglab.bench.by_hand.loop:robot_process", order, inbox):
         first = inbox.get().report
         if not isinstance(first, Listening):
             raise RunError(f"the loop by hand over {over} did not start: {first}")
         order = Order(told, first.address)
-        with started("station", "laglab.bench.by_hand:station_process", order, inbox):
+        with started("station", "laglab.bench.by_hand.loop:station_process", order, inbox):
             last = inbox.get().report
             if not isinstance(last, Progress):
                 raise RunError(f"the loop by hand over {over} ended early: {last}")

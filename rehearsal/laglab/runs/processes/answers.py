@@ -9,9 +9,9 @@ from typing import Any
 from msgspec import Struct
 
 from laglab.errors import LaglabError
-from laglab.runs.child import Inbox, Tell, started
 from laglab.runs.errors import SIDE_ERRORS
-from laglab.runs.reports import Computed, Ended, Failed
+from laglab.runs.processes.child import Inbox, Tell, started
+from laglab.runs.processes.reports import Computed, Ended, Failed
 
 
 class NoAnswerError(LaglabError):

@@ -1,0 +1,1 @@
+"""Commands that make runs, or a part of one."""

@@ -1,0 +1,1 @@
+"""Commands that make many runs, and say what they say together."""
