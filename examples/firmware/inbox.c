@@ -45,8 +45,9 @@ static void drop_if_late(const Inbox *inbox, Slot *slot, uint32_t tick) {
 }
 
 void inbox_take_command(Inbox *inbox, uint32_t tick, Command command, uint16_t length) {
-    Slot *slot = slot_of(inbox, command.stamp);
-    if (!slot || slot->came || length > PLAN_LONGEST || !isfinite(command.v) || !isfinite(command.omega)) {
+    const bool sound = length <= PLAN_LONGEST && isfinite(command.v) && isfinite(command.omega);
+    Slot *slot = sound ? slot_of(inbox, command.stamp) : NULL;
+    if (!slot || slot->came) {
         return;
     }
     slot->planned.command = command;
@@ -64,8 +65,8 @@ static bool is_sound(const Piece *piece) {
 }
 
 void inbox_take_piece(Inbox *inbox, uint32_t tick, const Piece *piece) {
-    Slot *slot = slot_of(inbox, piece->stamp);
-    if (!slot || !is_sound(piece)) {
+    Slot *slot = is_sound(piece) ? slot_of(inbox, piece->stamp) : NULL;
+    if (!slot) {
         return;
     }
     const size_t start = piece->first - 1u;

@@ -10,11 +10,17 @@ enum { ROBOT_SYSTEM = 1, STATION_SYSTEM = 200, DIALECT_VERSION = 3, MINUTE = 600
 #define ROBOT_COMPONENT MAV_COMP_ID_AUTOPILOT1
 #define STATION_COMPONENT MAV_COMP_ID_MISSIONPLANNER
 
+static const LinkEvent NOTHING = {.kind = LINK_NOTHING};
+
+static bool is_for_us(uint8_t system, uint8_t component) {
+    return system == ROBOT_SYSTEM && component == ROBOT_COMPONENT;
+}
+
 static LinkEvent command_of(const mavlink_message_t *message) {
     mavlink_laglab_command_t command;
     mavlink_msg_laglab_command_decode(message, &command);
-    if (command.target_system != ROBOT_SYSTEM || command.target_component != ROBOT_COMPONENT) {
-        return (LinkEvent){.kind = LINK_NOTHING};
+    if (!is_for_us(command.target_system, command.target_component)) {
+        return NOTHING;
     }
     return (LinkEvent){
         .kind = LINK_COMMAND, .command = {command.v, command.omega, (int32_t)command.tick}, .length = command.plan};
@@ -23,8 +29,8 @@ static LinkEvent command_of(const mavlink_message_t *message) {
 static LinkEvent plan_of(const mavlink_message_t *message) {
     mavlink_laglab_plan_t plan;
     mavlink_msg_laglab_plan_decode(message, &plan);
-    if (plan.target_system != ROBOT_SYSTEM || plan.target_component != ROBOT_COMPONENT) {
-        return (LinkEvent){.kind = LINK_NOTHING};
+    if (!is_for_us(plan.target_system, plan.target_component)) {
+        return NOTHING;
     }
     LinkEvent event = {.kind = LINK_PLAN};
     event.piece.stamp = (int32_t)plan.tick;
@@ -36,15 +42,15 @@ static LinkEvent plan_of(const mavlink_message_t *message) {
 }
 
 static LinkEvent request_of(uint8_t system, uint8_t component, uint16_t number) {
-    const bool ours = (system == ROBOT_SYSTEM || system == 0) && (component == ROBOT_COMPONENT || component == 0);
-    return ours ? (LinkEvent){.kind = LINK_REQUEST, .request = number} : (LinkEvent){.kind = LINK_NOTHING};
+    const bool ours = is_for_us(system ? system : ROBOT_SYSTEM, component ? component : ROBOT_COMPONENT);
+    return ours ? (LinkEvent){.kind = LINK_REQUEST, .request = number} : NOTHING;
 }
 
 static LinkEvent recall_of(const mavlink_message_t *message) {
     mavlink_laglab_recall_t asked;
     mavlink_msg_laglab_recall_decode(message, &asked);
-    if (asked.target_system != ROBOT_SYSTEM || asked.target_component != ROBOT_COMPONENT) {
-        return (LinkEvent){.kind = LINK_NOTHING};
+    if (!is_for_us(asked.target_system, asked.target_component)) {
+        return NOTHING;
     }
     return (LinkEvent){.kind = LINK_RECALL, .first = asked.first, .count = asked.count};
 }
@@ -104,9 +110,8 @@ static LinkEvent refused(const mavlink_message_t *message) {
 }
 
 static LinkEvent event_of(const mavlink_message_t *message) {
-    const LinkEvent nothing = {.kind = LINK_NOTHING};
     if (message->magic != MAVLINK_STX || message->sysid != STATION_SYSTEM || message->compid != STATION_COMPONENT) {
-        return nothing;
+        return NOTHING;
     }
     if (is_signed(message) && !have_key()) {
         return refused(message);
@@ -128,7 +133,7 @@ static LinkEvent event_of(const mavlink_message_t *message) {
                               mavlink_msg_command_int_get_command(message));
         case MAVLINK_MSG_ID_LAGLAB_END:
             return (LinkEvent){.kind = LINK_END, .reason = mavlink_msg_laglab_end_get_reason(message)};
-        default: return nothing;
+        default: return NOTHING;
     }
 }
 
@@ -176,7 +181,7 @@ LinkEvent link_next(void) {
     mavlink_message_t message;
     mavlink_status_t status;
     while (shown < holding) {
-        LinkEvent event = {.kind = LINK_NOTHING};
+        LinkEvent event = NOTHING;
         const uint8_t found = show_next(&message, &status);
         if (found == MAVLINK_FRAMING_OK) {
             drop(shown);
@@ -192,7 +197,7 @@ LinkEvent link_next(void) {
             return event;
         }
     }
-    return (LinkEvent){.kind = LINK_NOTHING};
+    return NOTHING;
 }
 
 size_t link_write_tick(uint8_t *buffer, uint32_t tick, Pose seen, Command in_force, uint8_t before) {

@@ -148,9 +148,8 @@ def _answers_once(session: ControllerSession) -> str | None:
     return None if count == 1 else f"tick {tick} is answered {count} times"
 
 
-def _missing(session: Session, _: object) -> bytes:
+def _missing(session: ControllerSession, _: object) -> bytes:
     """A tick that tells of a measurement that did not arrive."""
-    assert isinstance(session, ControllerSession)
     return session.forged(Tick(session.tick, 1)).raw
 
 

@@ -132,35 +132,34 @@ SENDING: list[Item[Session]] = [
 ]
 
 
-def _signed(session: Session) -> Signer:
-    if session.signer is None:
+def _key(session: Session) -> bytes:
+    if session.key is None:
         raise DoesNotApplyError("no key given")
-    return session.signer
+    return session.key
 
 
 def _unsigned(session: Session, forged: Forged) -> bytes:
-    _signed(session)
+    _key(session)
     return replace(forged, signer=None, incompatibility=0).raw
 
 
 def _signed_with(session: Session, forged: Forged, key: bytes, at: int) -> bytes:
-    _signed(session)
     stream = (0, session.system, session.component)
     return replace(forged, signer=Signer(key, stream, clock=lambda: at)).raw
 
 
 def _wrong_key(session: Session, forged: Forged) -> bytes:
     """And far in the future, so that one who believes it refuses us from then on."""
+    _key(session)
     return _signed_with(session, forged, bytes(32), signing_time() + 10**9)
 
 
 def _old(session: Session, forged: Forged) -> bytes:
-    assert session.key is not None or _signed(session)
-    return _signed_with(session, forged, session.key or b"", signing_time() - 10**5 * 30)
+    return _signed_with(session, forged, _key(session), signing_time() - 10**5 * 30)
 
 
 def _signs(session: Session) -> str | None:
-    _signed(session)
+    _key(session)
     bad = _badly_signed(session)
     return f"not so: {bad}" if bad else None
 

@@ -81,13 +81,13 @@ def reacts_soon(session: Session) -> str | None:
     return f"median {median:.3f} s" if median > SOON else None
 
 
-Mangle = Callable[[Session, Forged], bytes]
+S = TypeVar("S", bound=Session)
 
 
-def accepted(mangle: Mangle) -> Callable[[Session], str | None]:
+def accepted(mangle: Callable[[S, Forged], bytes]) -> Callable[[S], str | None]:
     """The stimulus in this form must be taken; if it was not, the ordinary one comes after it."""
 
-    def check(session: Session) -> str | None:
+    def check(session: S) -> str | None:
         session.endpoint.send(mangle(session, session.forged()))
         if session.reacts(session.waits.react):
             return None
@@ -97,10 +97,10 @@ def accepted(mangle: Mangle) -> Callable[[Session], str | None]:
     return check
 
 
-def refused(mangle: Mangle) -> Callable[[Session], str | None]:
+def refused(mangle: Callable[[S, Forged], bytes]) -> Callable[[S], str | None]:
     """The stimulus in this form must not be taken, and the ordinary one after it must."""
 
-    def check(session: Session) -> str | None:
+    def check(session: S) -> str | None:
         session.endpoint.send(mangle(session, session.forged()))
         if session.reacts(session.refusal):
             return "it was taken"

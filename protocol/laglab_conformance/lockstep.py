@@ -4,6 +4,7 @@ from collections.abc import Callable
 from itertools import pairwise
 
 from laglab_conformance.ending import ENDS, GIVES_UP
+from laglab_conformance.forge import Forged
 from laglab_conformance.framing import RECEIVING, SENDING, SIGNING
 from laglab_conformance.items import SOON, Item, reacts_soon, refused
 from laglab_conformance.planning import PLANS
@@ -19,10 +20,10 @@ from laglab_conformance.robot import (
     is_after,
 )
 from laglab_conformance.services import SERVICES
-from laglab_conformance.session import DoesNotApplyError, NoReactionError, Session
+from laglab_conformance.session import DoesNotApplyError, NoReactionError
 from laglab_conformance.stamps import STAMPED, no_earlier, tick_comes_first
 from laglab_protocol.framing.frame import Frame
-from laglab_protocol.messages.loop import Command, Tick
+from laglab_protocol.messages.loop import Tick
 from laglab_protocol.plans import Planned
 
 NEVER = 10**6
@@ -93,9 +94,12 @@ def _incomplete(session: LockstepSession) -> str | None:
     return None
 
 
-def _at(session: Session, offset: int) -> Command:
-    assert isinstance(session, LockstepSession)
-    return session.command(max(session.tick + offset, 0))
+def _later(session: LockstepSession, _: Forged) -> bytes:
+    return session.forged(session.command(session.tick + 1)).raw
+
+
+def _earlier(session: LockstepSession, _: Forged) -> bytes:
+    return session.forged(session.command(max(session.tick - 1, 0))).raw
 
 
 ITEMS: list[Item[LockstepSession]] = [
@@ -103,16 +107,8 @@ ITEMS: list[Item[LockstepSession]] = [
     Item("lock-step", "an unanswered tick is repeated", _repeats),
     *RECEIVING,
     Item("lock-step", "it goes from tick to tick", _one_by_one),
-    Item(
-        "lock-step",
-        "a command for a later tick is no answer",
-        refused(lambda session, _: session.forged(_at(session, +1)).raw),
-    ),
-    Item(
-        "lock-step",
-        "a command for an earlier tick is no answer",
-        refused(lambda session, _: session.forged(_at(session, -1)).raw),
-    ),
+    Item("lock-step", "a command for a later tick is no answer", refused(_later)),
+    Item("lock-step", "a command for an earlier tick is no answer", refused(_earlier)),
     Item("lock-step", "an answer waits for its estimate", _incomplete),
     *NOT_MEANT,
     NOT_FINITE,

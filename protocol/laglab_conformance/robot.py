@@ -162,8 +162,7 @@ def _not_finite(session: RobotSession) -> str | None:
     return None
 
 
-def _meant_for(system: int, session: Session, _: Forged) -> bytes:
-    assert isinstance(session, RobotSession)
+def _meant_for(system: int, session: RobotSession, _: Forged) -> bytes:
     other = replace(session.command(session.tick), target_system=system)
     return session.forged(other).raw
 

@@ -14,14 +14,14 @@ from fmpy.fmi3 import FMU3Model, FMU3Slave
 from laglab_fmu import build_fmus
 from laglab_fmu import slave as slave_module
 from laglab_fmu.compiler import host_platform
-from laglab_fmu.models import ROBOT, Kind, token
+from laglab_fmu.models import Kind, model_of, token
 
 
 class Face:
     """An fmpy instance; calls that differ between the versions have one name here."""
 
     def __init__(self, name: str, kind: str, folder: Path, debug: bool, **options: Any) -> None:
-        self.version, self.kind = int(name[-1]), kind
+        self.version, self.kind, self.model = int(name[-1]), kind, model_of(name)
         self.messages: list[tuple[int, str, str]] = []
         arguments = {
             "guid": token(name),
@@ -30,7 +30,7 @@ class Face:
         }
         if self.version == 2:
             platform = host_platform()
-            inside = f"binaries/{platform.fmi2_folder}/{ROBOT.name}{platform.suffix}"
+            inside = f"binaries/{platform.fmi2_folder}/{name[:-1]}{platform.suffix}"
             arguments["libraryPath"] = str(folder / inside)
         self.fmu: Any = _CLASSES[self.version, kind](**arguments)
         if self.version == 2:
@@ -48,14 +48,19 @@ class Face:
     def set(self, **values: float) -> None:
         """Sets variables by name."""
         for name, value in values.items():
-            kind = next(v.kind for v in ROBOT.variables if v.name == name)
+            [reference] = self.references(name)
+            kind = self.model.variables[reference].kind
             setter = getattr(self.fmu, "set" + _TYPE_NAMES[kind][self.version - 2])
-            setter([ROBOT.reference[name]], [value])
+            setter([reference], [value])
 
     def get(self, *names: str) -> list[float]:
         """Real values by name."""
         getter = self.fmu.getReal if self.version == 2 else self.fmu.getFloat64
-        return list(getter([ROBOT.reference[name] for name in names]))
+        return list(getter(self.references(*names)))
+
+    def references(self, *names: str) -> list[int]:
+        """Value references by name."""
+        return [self.model.reference[name] for name in names]
 
     def start(self, time: float = 0.0, stop: float | None = None, **values: float) -> None:
         """Sets parameters and leaves initialization mode."""

@@ -9,11 +9,10 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
-from fmpy.fmi3 import FMU3Slave
 from fmpy.validation import validate_fmu
 
 from laglab_fmu.foreign import FmuFile, ForeignRobot, Value, Wiring
-from laglab_fmu.models import MODELS, Kind, Model, Role, model_of
+from laglab_fmu.models import MODELS, Model
 
 TS = 0.01
 OTHERS = ("Car2", "Car3", "Omni2", "Omni3")
@@ -106,51 +105,3 @@ def test_the_omnidirectional_one_does_as_told_and_slides_on_a_worn_wheel(
     assert worn[1] == pytest.approx(TS * rim / 3)
     assert worn[3] == pytest.approx(0.5 - 2 / 3 * math.sqrt(0.75) * rim)
     assert worn[4] == pytest.approx(rim / (3 * 0.2))
-
-
-@pytest.mark.parametrize(
-    ("name", "told"),
-    [
-        ("Car3", {"speed_time_constant": 0.2}),
-        ("Car3", {"speed_max": 0.4, "steering_max": 0.1}),
-        ("Omni3", {"motor_time_constant": 0.1, "first_wheel_error": 0.2}),
-        ("Omni3", {"wheel_speed_max": 5.0, "wheel_radius_error": 0.1}),
-    ],
-)
-def test_partial_derivatives_agree_with_differences(
-    fmus: dict[str, Path], extracted: dict[str, Path], name: str, told: dict[str, float]
-) -> None:
-    """By the commands, and at the start by every parameter."""
-    table = [v for v in model_of(name).variables if v.kind is Kind.FLOAT64]
-    parameters = [v.name for v in table if v.role in (Role.PARAMETER, Role.TUNABLE)]
-    knowns = [*COMMANDS, *parameters]
-    values = {v.name: v.start for v in table if v.name in parameters} | told
-    values |= {"v_command": 0.5, "omega_command": 0.3, "theta_start": 0.7}
-    model = fmpy.read_model_description(fmus[name])
-    reference = {variable.name: variable.valueReference for variable in model.modelVariables}
-    made = FMU3Slave(
-        guid=model.guid, modelIdentifier=model.modelName, unzipDirectory=str(extracted[name])
-    )
-    made.instantiate()
-    try:
-        unknowns = [reference[each] for each in UNKNOWNS]
-
-        def at(shifted: str = "", by: float = 0.0) -> np.ndarray:
-            made.reset()
-            for each, value in values.items():
-                made.setFloat64([reference[each]], [value + by * (each == shifted)])
-            made.enterInitializationMode()
-            return np.array(made.getFloat64(unknowns))
-
-        for known in knowns:
-            step = 1e-7 * max(abs(values[known]), 1e-3)
-            if values[known] == 0.0:
-                continue  # at the end of what is allowed, or another kind of robot
-            found = (at(known, step) - at(known, -step)) / (2 * step)
-            at()
-            told_so = made.getDirectionalDerivative(unknowns, [reference[known]], [1.0])
-            np.testing.assert_allclose(told_so, found, rtol=1e-4, atol=1e-6, err_msg=known)
-            back = made.getDirectionalDerivative(unknowns, [reference[known]], [-1.0])
-            np.testing.assert_array_equal(back, np.negative(told_so), err_msg=known)
-    finally:
-        made.freeInstance()

@@ -28,6 +28,7 @@ from laglab_protocol import (
     End,
     EndReason,
     Heartbeat,
+    Link,
     Listener,
     Message,
     Receiver,
@@ -49,12 +50,11 @@ class StillPlant:
     def place(self, x: float, y: float, theta: float) -> None: ...
 
 
-class SimulatedLink:
+class SimulatedLink(Link):
     """A clock that only moves while somebody waits, and a station that takes its time to answer."""
 
     name = "simulated"
     datagrams = True
-    sender = peer = None
 
     def __init__(self, answer_time: Callable[[int], float], oversleep: Callable[[], float]) -> None:
         self.time = 1000.0
@@ -70,11 +70,6 @@ class SimulatedLink:
 
     def fileno(self) -> int:
         return -1
-
-    def reopen(self) -> None: ...
-
-    def offer(self, data: bytes, _: object = None) -> None:
-        self.send(data)
 
     def send(self, data: bytes, _: object = None) -> None:
         for frame in self._receiver.receive(data):
@@ -96,10 +91,6 @@ class SimulatedLink:
             return data
         self.time += timeout + self._oversleep()
         return b""
-
-    def accept_peer(self) -> None: ...
-
-    def leave_peer(self) -> None: ...
 
 
 class Kept(Recorder):

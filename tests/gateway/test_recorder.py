@@ -29,6 +29,7 @@ from laglab_protocol import (
     STATION_SYSTEM,
     Command,
     EndpointError,
+    Link,
     Listener,
     Receiver,
     Sender,
@@ -39,12 +40,11 @@ BREAKS_AT = 7
 DIRECTIONS: tuple[Direction, ...] = ("command", "measurement")
 
 
-class BreakingLink:
+class BreakingLink(Link):
     """A station that answers at once, until the link to it breaks while a tick is sent."""
 
     name = "breaking"
     datagrams = True
-    sender = peer = None
 
     def __init__(self) -> None:
         self._sender, self._receiver = Sender(STATION_SYSTEM, STATION_COMPONENT), Receiver()
@@ -52,11 +52,6 @@ class BreakingLink:
 
     def fileno(self) -> int:
         return -1
-
-    def reopen(self) -> None: ...
-
-    def offer(self, data: bytes, _: object = None) -> None:
-        self.send(data)
 
     def send(self, data: bytes, _: object = None) -> None:
         for frame in self._receiver.receive(data):
@@ -70,10 +65,6 @@ class BreakingLink:
     def receive(self, _: float) -> bytes:
         waiting, self._waiting = self._waiting, b""
         return waiting
-
-    def accept_peer(self) -> None: ...
-
-    def leave_peer(self) -> None: ...
 
 
 def test_a_link_that_breaks_leaves_the_trace_and_what_the_link_did_up_to_the_same_tick(

@@ -1,17 +1,16 @@
 """When an unfinished frame is given up, on a clock of the test's own."""
 
-from laglab_protocol import Listener, Receiver, Sender, Tick
+from laglab_protocol import Link, Listener, Receiver, Sender, Tick
 from laglab_protocol.listener import STREAM_SILENCE
 
 FALSE_START = bytes.fromhex("fdff000000010184cb00")
 """It claims 255 bytes of a message that there is."""
 
 
-class Line:
+class Line(Link):
     """One end of a link that gives what it is told to."""
 
     name = "line"
-    sender = peer = None
 
     def __init__(self, datagrams: bool) -> None:
         self.datagrams = datagrams
@@ -22,16 +21,8 @@ class Line:
 
     def send(self, data: bytes, to: object = None) -> None: ...
 
-    def offer(self, data: bytes, to: object = None) -> None: ...
-
     def receive(self, _: float) -> bytes:
         return self.inbox.pop(0) if self.inbox else b""
-
-    def accept_peer(self) -> None: ...
-
-    def leave_peer(self) -> None: ...
-
-    def reopen(self) -> None: ...
 
 
 def test_on_a_stream_only_a_real_silence_gives_a_false_start_up() -> None:

@@ -1,54 +1,49 @@
 """The model's structure in both descriptions: what is unknown, and what it depends on."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from xml.etree.ElementTree import Element, SubElement
 
 from laglab_fmu.models import Role, Variable
 
-_OUTPUTS = (Role.STATE, Role.SAMPLED, Role.ALGEBRAIC)
-
-
-def _listed(
-    names: Sequence[str], numbers: Mapping[str, object], reference: Mapping[str, int]
-) -> str:
-    """Variables in the order of the table, by the numbers that the version of FMI gives them."""
-    return " ".join(str(numbers[name]) for name in sorted(names, key=reference.__getitem__))
+_OUTPUTS = {Role.STATE, Role.SAMPLED, Role.ALGEBRAIC}
+_DERIVATIVES = {Role.DERIVATIVE}
 
 
 def structure_2(
     root: Element,
-    variables: list[Variable],
-    index: dict[str, str],
+    variables: Iterable[Variable],
+    index: Mapping[str, str],
     reference: Mapping[str, int],
 ) -> None:
     """FMI 2.0's, which numbers the variables by their place in the description."""
-    structure = SubElement(root, "ModelStructure")
-    for group, roles in (("Outputs", _OUTPUTS), ("Derivatives", (Role.DERIVATIVE,))):
+
+    def tell(group: str, roles: set[Role], at_start: bool = False) -> None:
         unknowns = SubElement(structure, group)
         for variable in variables:
             if variable.role in roles:
-                depends = _listed(variable.depends_on, index, reference)
+                names = variable.depends_at_start_on if at_start else variable.depends_on
+                depends = " ".join(index[each] for each in sorted(names, key=reference.__getitem__))
                 attributes = {"index": index[variable.name], "dependencies": depends}
                 SubElement(unknowns, "Unknown", attributes)
-    initial = SubElement(structure, "InitialUnknowns")
-    for variable in variables:
-        if variable.role in (*_OUTPUTS, Role.DERIVATIVE):
-            depends = _listed(variable.depends_at_start_on, index, reference)
-            attributes = {"index": index[variable.name], "dependencies": depends}
-            SubElement(initial, "Unknown", attributes)
 
-
-def structure_3(root: Element, variables: list[Variable], references: Mapping[str, int]) -> None:
-    """FMI 3.0's, which goes by value references."""
     structure = SubElement(root, "ModelStructure")
-    for group, roles in (("Output", _OUTPUTS), ("ContinuousStateDerivative", (Role.DERIVATIVE,))):
+    tell("Outputs", _OUTPUTS)
+    tell("Derivatives", _DERIVATIVES)
+    tell("InitialUnknowns", _OUTPUTS | _DERIVATIVES, at_start=True)
+
+
+def structure_3(root: Element, variables: Iterable[Variable], reference: Mapping[str, int]) -> None:
+    """FMI 3.0's, which goes by value references."""
+
+    def tell(group: str, roles: set[Role], at_start: bool = False) -> None:
         for variable in variables:
             if variable.role in roles:
-                depends = _listed(variable.depends_on, references, references)
-                reference = str(references[variable.name])
-                SubElement(structure, group, valueReference=reference, dependencies=depends)
-    for variable in variables:
-        if variable.role in (*_OUTPUTS, Role.DERIVATIVE):
-            depends = _listed(variable.depends_at_start_on, references, references)
-            reference = str(references[variable.name])
-            SubElement(structure, "InitialUnknown", valueReference=reference, dependencies=depends)
+                names = variable.depends_at_start_on if at_start else variable.depends_on
+                depends = " ".join(map(str, sorted(reference[each] for each in names)))
+                attributes = {"valueReference": str(reference[variable.name])}
+                SubElement(structure, group, attributes | {"dependencies": depends})
+
+    structure = SubElement(root, "ModelStructure")
+    tell("Output", _OUTPUTS)
+    tell("ContinuousStateDerivative", _DERIVATIVES)
+    tell("InitialUnknown", _OUTPUTS | _DERIVATIVES, at_start=True)

@@ -10,11 +10,10 @@ from typing import Any
 from fmpy.model_description import ModelDescription
 
 from laglab_fmu.errors import CallError
+from laglab_fmu.foreign.steps import SAME
 
 TOLERANCE = 1e-6
 """Relative, where the FMU asks for none."""
-SAME = 1e-9
-"""Times closer than this part of a step are the same, computed in two ways."""
 ASKS_TO_END = "it asks to end the simulation"
 
 

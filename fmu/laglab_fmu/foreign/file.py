@@ -46,7 +46,7 @@ class FmuFile:
         except OSError as error:
             raise FmuFileError(f"{path} cannot be read: {error.strerror or error}") from error
         except Exception as error:  # fmpy raises nothing narrower
-            raise FmuFileError(f"{path}: its modelDescription.xml: {_line(error)}") from error
+            raise FmuFileError(f"{path}: its modelDescription.xml: {one_line(error)}") from error
         if description.fmiVersion == "1.0":
             raise FmuFileError(f"{path} is of FMI 1.0: export it again as FMI 2 or 3")
         folders = {place.parts[1] for place in places if _is_binary(place)}
@@ -97,7 +97,7 @@ def _described(path: Path) -> tuple[ModelDescription, str]:
     try:
         return fmpy.read_model_description(path), ""
     except ValidationError as error:
-        return fmpy.read_model_description(path, validate=False), _line(error.problems[0])
+        return fmpy.read_model_description(path, validate=False), one_line(error.problems[0])
 
 
 def _is_binary(place: PurePosixPath) -> bool:
@@ -105,5 +105,6 @@ def _is_binary(place: PurePosixPath) -> bool:
     return len(place.parts) == 3 and place.parts[0] == "binaries"
 
 
-def _line(error: object) -> str:
+def one_line(error: object) -> str:
+    """What an error says; its kind, where it says nothing."""
     return " ".join(str(error).split()) or type(error).__name__

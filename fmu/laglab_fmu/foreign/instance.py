@@ -20,7 +20,7 @@ from fmpy.simulation import (
 
 from laglab_fmu.compiler import host_platform
 from laglab_fmu.errors import CallError, FmuFileError
-from laglab_fmu.foreign.file import DAMAGED, FmuFile
+from laglab_fmu.foreign.file import DAMAGED, FmuFile, one_line
 from laglab_fmu.foreign.wiring import Value
 
 KEPT = 100
@@ -74,7 +74,7 @@ def _started(file: FmuFile, interface: str, folder: Path, log: Log) -> Any:
     except DAMAGED as error:
         raise FmuFileError(f"{file.path} is damaged: {error}") from error
     except Exception as error:  # fmpy raises nothing narrower
-        said = "; ".join((" ".join(str(error).split()).replace(f"{folder}/", ""), *log.lines))
+        said = "; ".join((one_line(error).replace(f"{folder}/", ""), *log.lines))
         raise FmuFileError(f"{file.path} does not start: {said}") from error
 
 

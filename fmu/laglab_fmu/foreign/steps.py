@@ -4,7 +4,7 @@ from laglab_fmu.errors import FmuFileError
 from laglab_fmu.foreign.file import FmuFile
 
 SAME = 1e-9
-"""Steps that differ by less than this part of them are the same."""
+"""Times and steps that differ by less than this part of a step are the same."""
 
 
 def substeps(file: FmuFile, sample_time: float) -> int:

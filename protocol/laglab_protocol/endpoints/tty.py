@@ -5,14 +5,12 @@ import os
 import select
 import stat
 import tty
-from abc import ABC, abstractmethod
 from pathlib import Path
 from time import monotonic
-from typing import Self
 
 import serial
 
-from laglab_protocol.endpoints.interface import Address
+from laglab_protocol.endpoints.interface import Address, Endpoint
 from laglab_protocol.endpoints.waiting import first_bytes, writable
 from laglab_protocol.errors import (
     FarEndGoneError,
@@ -29,13 +27,11 @@ STALL_TIMEOUT = 1.0
 """Seconds that a full queue may stay full before the far end counts as stalled."""
 
 
-class _Tty(ABC):
+class _Tty(Endpoint):
     """Reads and writes a descriptor that does not block."""
 
     datagrams = False
     loopback = True
-    sender = None
-    peer = None
 
     def __init__(self, name: str, descriptor: int) -> None:
         self.name = name
@@ -52,12 +48,6 @@ class _Tty(ABC):
 
     def fileno(self) -> int:
         return self._descriptor
-
-    def accept_peer(self) -> None:
-        return
-
-    def leave_peer(self) -> None:
-        return
 
     def receive(self, timeout: float) -> bytes:
         return first_bytes(self._read, self.fileno, timeout)
@@ -114,15 +104,6 @@ class _Tty(ABC):
         return FarEndGoneError(
             f"{self.name}: the far end is gone ({reason}): plug it in again, then start again"
         )
-
-    @abstractmethod
-    def close(self) -> None: ...
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
 
 class SerialPort(_Tty):
@@ -196,9 +177,6 @@ class Pty(_Tty):
         except BaseException:
             self.close()  # an interrupt may come at any moment
             raise
-
-    def reopen(self) -> None:
-        return  # it is ours: its far end may come and go
 
     def close(self) -> None:
         if self._link is None:

@@ -3,12 +3,12 @@
 import ipaddress
 import selectors
 import socket
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from time import monotonic
-from typing import Any, Self
+from typing import Any
 
 from laglab_protocol.endpoints.apart import queue_for
-from laglab_protocol.endpoints.interface import Address
+from laglab_protocol.endpoints.interface import Address, Endpoint
 from laglab_protocol.endpoints.waiting import first_bytes
 from laglab_protocol.errors import EndpointError, NoSuchPortError, PortBusyError
 from laglab_protocol.ration import LEAST_BYTES, Ration
@@ -26,20 +26,14 @@ STRANGERS_EVERY = 2e-4
 """[s] Between two looks for them while there is a peer."""
 
 
-class _Udp(ABC):
+class _Udp(Endpoint):
     datagrams = True
-    sender: Address | None = None
-    peer: Address | None = None
 
     def __init__(self, scheme: str, host: str, port: int) -> None:
-        self._scheme = scheme
         family, self._address = _resolve(scheme, host, port)
+        self.name = _spelled(scheme, self._address)
         self._socket = socket.socket(family, socket.SOCK_DGRAM)
         self._socket.setblocking(False)
-
-    @property
-    def name(self) -> str:
-        return _spelled(self._scheme, self._address)
 
     @property
     def loopback(self) -> bool:
@@ -51,33 +45,12 @@ class _Udp(ABC):
     def close(self) -> None:
         self._socket.close()
 
-    def accept_peer(self) -> None:
-        return
-
-    def leave_peer(self) -> None:
-        return
-
-    @abstractmethod
-    def send(self, data: bytes, to: Address | None = None) -> None: ...
-
-    def offer(self, data: bytes, to: Address | None = None) -> None:
-        self.send(data, to)  # a datagram does not wait for whoever reads it
-
-    def reopen(self) -> None:
-        return  # a socket outlives whoever is at the far end
-
     def receive(self, timeout: float) -> bytes:
         return first_bytes(self._read, self.fileno, timeout)
 
     @abstractmethod
     def _read(self) -> bytes | None:
         """A datagram that is there already; None when there is none."""
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
 
 class UdpIn(_Udp):
@@ -94,7 +67,7 @@ class UdpIn(_Udp):
         except OSError as error:
             self._socket.close()
             raise _cannot("bind", self.name, error) from error
-        self._address = self._socket.getsockname()
+        self.name = _spelled("udpin", self._socket.getsockname())
         self._apart: socket.socket | None = None
         self._next_look = 0.0
         self._strangers = Ration(STRANGERS_A_SECOND, STRANGERS_DATAGRAM, LEAST_BYTES)

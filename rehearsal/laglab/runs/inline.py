@@ -3,17 +3,15 @@
 from time import sleep
 
 from laglab_control import PluginFailedError
-from laglab_protocol import Address, EndReason, Receiver
+from laglab_protocol import Address, EndReason, Link, Receiver
 from laglab_station import Station
 
 
-class InlineLink:
+class InlineLink(Link):
     """A link whose far end is a station core, called directly."""
 
     name = "inline"
     datagrams = True
-    sender = None
-    peer = None
 
     def __init__(self, station: Station, receiver: Receiver) -> None:
         self._station = station
@@ -40,22 +38,9 @@ class InlineLink:
         if answer:
             self._inbox.append(b"".join(answer))
 
-    def offer(self, data: bytes, to: Address | None = None) -> None:
-        """There is always room."""
-        self.send(data, to)
-
     def receive(self, timeout: float) -> bytes:
         """The next answer; where there is none, nothing will come in time either."""
         if self._inbox:
             return self._inbox.pop(0)
         sleep(timeout)
         return b""
-
-    def accept_peer(self) -> None:
-        """There is no other peer."""
-
-    def leave_peer(self) -> None:
-        """There is no other peer."""
-
-    def reopen(self) -> None:
-        """It never breaks."""

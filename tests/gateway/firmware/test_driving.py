@@ -102,6 +102,12 @@ def test_what_it_does_not_follow(line: Line, bad: Command) -> None:
     assert {(sample.v, sample.command_tick) for sample in line.samples(20)} == {(0.25, 5)}
 
 
+def test_what_is_not_finite_keeps_no_place_from_others(line: Line) -> None:
+    begin(line)
+    line.say(command(6 + 64_000, math.nan), command(6, 0.25))
+    assert line.samples(20)[-1].speeds == (0.25, 0.0)
+
+
 def test_nobody_but_the_station_commands_it(line: Line) -> None:
     begin(line)
     stranger = line._replace(sender=Sender(7, STATION_COMPONENT))
