@@ -42,6 +42,7 @@ def test_the_command_leaves_table_and_picture(
     assert code == 0
     lines = out.splitlines()
     assert lines[0].split() == ["lab,", "n", "=", "10,", "m", "=", "20,", "1", "runs", "each"]
+    assert "settled [s] RMS [m] driven [m]" in lines[1]
     rows = [line.split() for line in lines if line.endswith(tuple("0123456789"))]
     raw, plans, guarded, *_ = (row[-5:] for row in rows)
     assert raw[:3] == ["raw", "0%", "-"]

@@ -9,6 +9,7 @@ def test_the_command_leaves_table_and_picture(tmp_path, ended, monkeypatch):
     monkeypatch.chdir(tmp_path)
     code, page, _ = ended("trust", "--seeds", "1", "--only", "moved by 0.5 m", "--only", "lab")
     assert code == 0
+    assert "of the position [m];" in page
     moved, lab = (
         next(line for line in page.splitlines() if line.startswith(name)).split()
         for name in ("moved by 0.5 m", "lab ")

@@ -6,7 +6,7 @@ from laglab.soak.played import Part, Played
 from laglab_gateway import ROWS
 
 COMPLETED, KNOWN_BEFORE, DIVERGED, BROKE, INTERRUPTED = 0, 2, 3, 4, 130
-"""Exit codes, as the README lists them."""
+"""Exit codes, as docs/reference/errors.md lists them."""
 KILLED = -9
 OVER = frozenset({COMPLETED, DIVERGED})
 

@@ -105,8 +105,8 @@ CLAIMS = (
         "converges.",
         command="laglab run fig8 --p0 2e-3",
         experiment=partial(priors, PRIORS),
-        got="Of {seeds:.0f} seeds each some diverge at P_0 = {lost:g} I already, all at "
-        "{all_lost:g} I; R is 1e-2 m², 1.8e-2 rad².",
+        got="Of {seeds:.0f} seeds each, the smallest P_0 at which one diverges is {lost:g} I, and "
+        "at which all do {all_lost:g} I; R is 1e-2 m², 1.8e-2 rad².",
         holds=lambda n: n["lost"] >= 1e-2,
         why="A gain above 2 sin(π/(2(2m + 1))), 0.077 at m = 20, is unstable; the first one is "
         "about P_0/(P_0 + R).",

@@ -71,7 +71,7 @@ def rivals_table(title: str, of: Scores, links: Sequence[str], strategies: Seque
     )
     table.add_column("link", no_wrap=True)
     table.add_column("strategy", no_wrap=True)
-    for heading in ("converged", "settled \\[s]", "RMS \\[m]", "driven \\[m]"):
+    for heading in ("converged", "settled [s]", "RMS [m]", "driven [m]"):
         table.add_column(heading, justify="right")
     for link in links:
         for number, strategy in enumerate(strategies):

@@ -66,7 +66,7 @@ def trust_table(of: Scores, stations: Sequence[str], seeds: int) -> Table:
     error, the NEES and the alarms."""
     table = plain_table(
         title=f"converged, of {seeds} runs each",
-        caption=f"of {stations[0]}: root mean square error of the position \\[m];\n"
+        caption=f"of {stations[0]}: root mean square error of the position [m];\n"
         "NEES (3 if its claims are true); runs with an alarm; of these, how many\n"
         f"were within {FOUND:g} m of the robot {LOOKED_AT_AFTER:g} s later",
     )
