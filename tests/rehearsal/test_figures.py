@@ -46,6 +46,14 @@ def test_long_names_leave_room_for_what_they_name(width: Width) -> None:
     assert names(figure.axes[0]) == ["…" + LONG[-25:], "…" + f"{LONG}Too"[-25:]]
 
 
+@pytest.mark.parametrize("width", WIDTHS)
+def test_many_shadows_are_named_across_their_panels(width: Width) -> None:
+    beside = ["popf-printed", "calibrating-ekf", "tue-predictor"]
+    run = laglab.run("fig8", {"duration": 0.5, "estimator.compare": beside})
+    with printed():
+        run.figure(width=width).savefig(BytesIO())
+
+
 @pytest.fixture(scope="module")
 def papers() -> list[laglab.Run]:
     return [laglab.run(name, {"duration": 2.0}) for name in ("fig5", "fig6")]

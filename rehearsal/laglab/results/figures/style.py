@@ -6,7 +6,7 @@ colours are Okabe's and Ito's, which the colour-blind can tell apart, in an orde
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
@@ -60,8 +60,8 @@ PRINT = {
 """matplotlib's settings; publishers want fonts of type 42, outlines that can be searched."""
 
 
-ENTRY, WIDE = 0.5, 1.4
-"""[inch] About the width of a name in a legend, and of one of the longest."""
+MARK, LETTER = 0.4, 0.046
+"""[inch] About the width of what stands beside a name in a legend, and of each of its letters."""
 LONGEST = 26
 """Letters of a name."""
 
@@ -112,20 +112,36 @@ def short(name: str) -> str:
     return name if len(name) <= LONGEST else f"…{name[1 - LONGEST :]}"
 
 
-def legend(axes: Axes) -> None:
-    """Above the panel, where it hides nothing: of what has a name, if anything has."""
+def legend(axes: Axes, across: float = 1.0) -> None:
+    """Above the panel, where it hides nothing: of what has a name, if anything has. `across` so
+    many panels, whose other ones have none."""
     handles, names = axes.get_legend_handles_labels()
+    if not names:
+        return
+    names = list(map(short, names))
     width = axes.get_position().width * axes.figure.get_figure(root=True).get_figwidth()
-    wide = max(map(len, names), default=0) > LONGEST
-    if names:
-        axes.legend(
-            handles,
-            list(map(short, names)),
-            loc="lower left",
-            bbox_to_anchor=(0.0, 1.0),
-            ncols=max(1, int(width / WIDE)) if wide else max(2, int(width / ENTRY)),
-            frameon=False,
-            borderaxespad=0.1,
-            columnspacing=1.0,
-            handletextpad=0.5,
-        )
+    columns = _columns(names, across * width)
+    drawn = axes.legend(
+        handles,
+        names,
+        loc="lower left",
+        bbox_to_anchor=(0.0, 1.0),
+        ncols=columns,
+        frameon=False,
+        borderaxespad=0.1,
+        columnspacing=1.0,
+        handletextpad=0.5,
+    )
+    if across > 1:  # the panel need not be as wide as its legend, but what is above makes room
+        drawn.set_in_layout(False)
+        axes.set_title("\n".join(" " * -(-len(names) // columns)))
+
+
+def _columns(names: Sequence[str], width: float) -> int:
+    """As many as fit, filled one after the other."""
+    for columns in range(len(names), 1, -1):
+        rows = -(-len(names) // columns)
+        parts = [names[first : first + rows] for first in range(0, len(names), rows)]
+        if sum(MARK + LETTER * max(map(len, part)) for part in parts) <= width:
+            return columns
+    return 1

@@ -118,5 +118,12 @@ def _draw(axes: Axes, told: Shown, name: str, bottom: bool) -> None:
         case _:
             draw_component(axes, told, "xyθ".index(name))
     if component in ("x", "v", "omega"):
-        legend(axes)
+        legend(axes, _row(axes) if kind == "shadow" else 1.0)
     time_axis(axes, told, bottom)
+
+
+def _row(axes: Axes) -> float:
+    """How many panels of this one's width stand in its row."""
+    spec = axes.get_subplotspec()
+    assert spec is not None, "it is one of a mosaic's"
+    return spec.get_gridspec().ncols / len(spec.colspan)
