@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -12,6 +13,8 @@ import numpy as np
 import pymavlink
 import pytest
 
+from laglab.command import main
+from laglab.results.run import open_run
 from laglab.scenario import load
 from laglab_gateway import read_trace
 
@@ -136,3 +139,21 @@ def test_a_report_is_left_where_one_is_asked_for(laglab: Laglab, tmp_path: Path)
     assert result.returncode == 0, result.stderr
     assert "report in run/report.html" in result.stdout
     assert "fig4" in (tmp_path / "run" / "report.html").read_text("utf-8")
+
+
+FAILING = """
+class Law:
+    def __init__(self, goal): pass
+    def drive(self, pose, time, memory): raise ValueError("no more")
+"""
+
+
+def test_a_verdict_names_the_tick_of_a_failure_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "failing.py").write_text(FAILING)
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit):
+        main(["run", "lab", "--law", "failing:Law", "--transport", "inline", "--out", "run"])
+    said = open_run("run").summary.verdict
+    assert re.fullmatch(r"stopped at tick \d+: failing:Law\.drive: ValueError: no more", said)
