@@ -1,44 +1,29 @@
 """What not every machine has installed: each side alone needs less than the whole rig."""
 
-from enum import Enum
 from importlib.util import find_spec
+from typing import NamedTuple
 
 from laglab.errors import MissingExtraError
 
 
-class Need(Enum):
+class Need(NamedTuple):
     """What something needs: the extra that brings it, and the modules that are in it."""
 
-    STEPPING = "gateway", ("fmpy",)
-    DRAWING = "run", ("matplotlib",)
-    REHEARSING = "run", ("fmpy", "matplotlib")
-    MAPPING = "study", ("matplotlib", "pyarrow")
-    STUDYING = "study", ("fmpy", "pyarrow", "pandas")
-    SPREADING = "study", ("distributed",)
-    PARQUET = "export", ("pyarrow",)
-    MATLAB = "export", ("scipy",)
-    BAGS = "export", ("mcap_ros2",)
-    SEEING = "see", ("bokeh",)
-    CAPTURES = "link", ("dpkt",)
-
-    def __init__(self, extra: str, modules: tuple[str, ...]) -> None:
-        self.extra = extra
-        self.modules = modules
+    extra: str
+    modules: tuple[str, ...]
 
 
-(
-    STEPPING,
-    DRAWING,
-    REHEARSING,
-    MAPPING,
-    STUDYING,
-    SPREADING,
-    PARQUET,
-    MATLAB,
-    BAGS,
-    SEEING,
-    CAPTURES,
-) = Need
+STEPPING = Need("gateway", ("fmpy",))
+DRAWING = Need("run", ("matplotlib",))
+REHEARSING = Need("run", ("fmpy", "matplotlib"))
+MAPPING = Need("study", ("matplotlib", "pyarrow"))
+STUDYING = Need("study", ("fmpy", "pyarrow", "pandas"))
+SPREADING = Need("study", ("distributed",))
+PARQUET = Need("export", ("pyarrow",))
+MATLAB = Need("export", ("scipy",))
+BAGS = Need("export", ("mcap_ros2",))
+SEEING = Need("see", ("bokeh",))
+CAPTURES = Need("link", ("dpkt",))
 
 
 def require(need: Need) -> None:

@@ -2,6 +2,7 @@
 
 import tempfile
 from collections.abc import Mapping
+from contextlib import ExitStack
 from pathlib import Path
 
 from laglab.errors import RunError
@@ -48,31 +49,20 @@ def run(
     chosen = _chosen(scenario, overrides)
     if out is None:
         chosen.must_end()  # memory has no room for what does not end
-    with progress_of(chosen, progress) as told:
+    way = Way(transport=transport, plant=chosen.plant.called)
+    with ExitStack() as stack:
+        told = stack.enter_context(progress_of(chosen, progress))
         if transport == "inline" and out is None:
             recorder = MemoryRecorder()
             ending = rehearse_inline(chosen, recorder, told, controller=controller)
-            return _whole(ending, keep(chosen, Way(plant=chosen.plant.called), ending, recorder))
+            return _whole(ending, keep(chosen, way, ending, recorder))
         if out is not None:
             directory = place(chosen, Path(out))
-            ending = run_into(directory, chosen, transport, told)
-            return _whole(
-                ending,
-                complete(
-                    chosen, Way(transport=transport, plant=chosen.plant.called), ending, directory
-                ),
-            )
-        with tempfile.TemporaryDirectory(prefix="laglab-") as folder:
-            directory = Path(folder)
-            ending = run_into(directory, chosen, transport, told)
-            done = complete(
-                chosen,
-                Way(transport=transport, plant=chosen.plant.called),
-                ending,
-                directory,
-                figure=False,
-            )
-            return _whole(ending, _in_memory(done))
+        else:
+            directory = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="laglab-")))
+        ending = run_into(directory, chosen, transport, told)
+        done = complete(chosen, way, ending, directory, figure=out is not None)
+        return _whole(ending, done if out is not None else _in_memory(done))
 
 
 def _chosen(scenario: Scenario | str | Path, overrides: Mapping[str, object] | None) -> Scenario:

@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -145,3 +146,17 @@ def test_a_report_is_left_where_one_is_asked_for(ended: Ended, folder: Path) -> 
     assert done.code == 0, done.err
     assert "report in run/report.html" in done.out
     assert "fig4" in (folder / "run" / "report.html").read_text("utf-8")
+
+
+FAILING = """
+class Law:
+    def __init__(self, goal): pass
+    def drive(self, pose, time, memory): raise ValueError("no more")
+"""
+
+
+def test_a_verdict_names_the_tick_of_a_failure_once(ended: Ended, folder: Path) -> None:
+    (folder / "failing.py").write_text(FAILING)
+    ended("run", "lab", "--law", "failing:Law", "--transport", "inline", "--out", "run")
+    said = laglab.open_run("run").summary.verdict
+    assert re.fullmatch(r"stopped at tick \d+: failing:Law\.drive: ValueError: no more", said)

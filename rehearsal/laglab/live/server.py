@@ -6,7 +6,6 @@ Nothing here can hold the loop: that sends its datagrams whether anybody reads t
 import asyncio
 import os
 from contextlib import suppress
-from functools import partial
 from http import HTTPStatus
 
 from msgspec.structs import replace
@@ -149,7 +148,7 @@ class _Server(asyncio.DatagramProtocol):
     def _answer(self, asked: bytes, writer: asyncio.StreamWriter) -> bool:
         """True when it is told all that comes, too."""
         request = parse(asked)
-        say = partial(_say, writer)
+        say = writer.write
         if request is None:
             say(answer(HTTPStatus.BAD_REQUEST))
         elif refused := self._door.refusal(request):
@@ -169,17 +168,10 @@ class _Server(asyncio.DatagramProtocol):
         return False
 
 
-def _say(writer: asyncio.StreamWriter, data: bytes) -> None:
-    writer.write(data)
-
-
 def _together(several: list[Rows]) -> Rows:
-    return Rows(
-        [row for rows in several for row in rows.trace],
-        [row for rows in several for row in rows.arrivals],
-        [row for rows in several for row in rows.claims],
-        [row for rows in several for row in rows.link],
-        [row for rows in several for row in rows.timing],
-        [frame for rows in several for frame in rows.frames],
-        several[-1].stopped,
-    )
+    *lists, _ = Rows.__struct_fields__
+    whole = Rows(stopped=several[-1].stopped)
+    for rows in several:
+        for name in lists:
+            getattr(whole, name).extend(getattr(rows, name))
+    return whole

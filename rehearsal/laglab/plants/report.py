@@ -71,12 +71,7 @@ def told_in_toml(scenario: Scenario, trial: Trial) -> str:
         document["start"] = list(trial.start)
     table = tomlkit.table()
     table["fmu"] = plant.fmu.name
-    tables: dict[str, Mapping[str, object]] = {
-        "inputs": plant.wired_inputs,
-        "outputs": plant.wired_outputs,
-        "start": plant.wired_start,
-        "parameters": plant.parameters,
-    }
+    tables: dict[str, Mapping[str, object]] = {**plant.names, "parameters": plant.parameters}
     for key, values in tables.items():
         if values:
             table[key] = tomlkit.inline_table()

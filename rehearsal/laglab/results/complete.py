@@ -215,7 +215,8 @@ def _verdict(
         case EndReason.INTERRUPTED:
             return f"interrupted at tick {tick}"
         case EndReason.FAILED:
-            return f"stopped at tick {tick}: {ending.problem or 'the other side failed'}"
+            said = ending.problem.removeprefix(f"tick {tick}: ") or "the other side failed"
+            return f"stopped at tick {tick}: {said}"
         case EndReason.DISPLACED:
             return f"stopped at tick {tick}: another station has taken over"
     stopped = "after an emergency stop: " if ending.emergency_stop else ""

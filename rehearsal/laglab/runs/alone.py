@@ -36,28 +36,18 @@ def serve_alone(robot: OpenRobot, around: Surroundings) -> Ending:
     )
 
 
-class _Timed(Onlooker):
-    """Passes all on, and times the loop."""
-
-    def __init__(self, onlooker: Onlooker, clock: LoopClock) -> None:
-        self._onlooker = onlooker
-        self._clock = clock
-        self.warned = onlooker.warned  # type: ignore[method-assign]
-        self.said = onlooker.said  # type: ignore[method-assign]
-
-    def answered(self, tick: int) -> None:
-        self._clock(tick)
-        self._onlooker.answered(tick)
-
-
 def answer_alone(
-    station: Station, listener: Listener, silence_timeout: float, onlooker: Onlooker
+    station: Station,
+    listener: Listener,
+    silence_timeout: float,
+    onlooker: Onlooker,
+    clock: LoopClock,
 ) -> Ending:
-    """The station's side to the end, the onlooker closed; what breaks is in the ending."""
-    clock = LoopClock(lambda _: None)
+    """The station's side to the end, the onlooker closed, which tells the clock of every tick; what
+    breaks is in the ending."""
     try:
         with short_pauses(), closing(onlooker):
-            end = run_station(station, listener, silence_timeout, _Timed(onlooker, clock))
+            end = run_station(station, listener, silence_timeout, onlooker)
     except KeyboardInterrupt:
         outcome = Outcome(EndReason.INTERRUPTED, station.tick or 0)
     except SIDE_ERRORS as error:

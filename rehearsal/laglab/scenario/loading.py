@@ -11,7 +11,7 @@ from laglab.errors import ScenarioError
 from laglab.scenario import paths
 from laglab.scenario.model import FILES, Scenario
 from laglab.scenario.overrides import Overrides, put
-from laglab.scenario.toml import parsed
+from laglab.scenario.toml import parsed, read_by_name, shipped_in
 
 SHIPPED = resources.files("laglab.scenario") / "shipped"
 SAYS_NOTHING = {"name", "description"}
@@ -64,24 +64,15 @@ def shipped() -> dict[str, Scenario]:
 
 def shipped_names() -> list[str]:
     """Of the scenarios that come with the package."""
-    names = (Path(file.name) for file in SHIPPED.iterdir())
-    return sorted(name.stem for name in names if name.suffix == ".toml")
+    return shipped_in(SHIPPED)
 
 
 def _read(reference: str) -> tuple[dict[str, Any], Path]:
-    path = Path(reference)
-    if reference in shipped_names():
-        path = Path(str(SHIPPED / f"{reference}.toml"))
+    text, path = read_by_name(reference, SHIPPED, "scenario", ScenarioError)
     try:
-        fields = parsed(path.read_text(encoding="utf-8"))
-    except (FileNotFoundError, IsADirectoryError):
-        names = ", ".join(shipped_names())
-        raise ScenarioError(
-            f"{reference}: no such scenario; shipped: {names}; or give a path to a TOML file"
-        ) from None
-    except (OSError, ValueError) as error:
+        return _anchored(parsed(text), path.parent), path
+    except ValueError as error:
         raise ScenarioError(f"{reference}: not a readable TOML file: {error}") from None
-    return _anchored(fields, path.parent), path
 
 
 def _anchored(fields: dict[str, Any], folder: Path) -> dict[str, Any]:

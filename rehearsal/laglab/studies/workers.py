@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from contextlib import suppress
 from queue import Empty, Queue
-from types import TracebackType
 from typing import Any, Protocol, Self, TypeVar
 
 from msgspec import Struct
@@ -73,12 +72,7 @@ class Processes:
             thread.start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """Ends the children, whatever they are at."""
         self._over.set()
         for thread in self._threads:

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -26,7 +25,7 @@ from laglab.results.place import place
 from laglab.results.station import StationGlance, StationRecord
 from laglab.runs.alone import answer_alone, serve_alone
 from laglab.runs.clock import LoopClock
-from laglab.runs.glance import Told, watched
+from laglab.runs.glance import watched
 from laglab.runs.robot_side import Setup, open_robot, wrapped_replay
 from laglab.runs.station_side import open_station
 from laglab.scenario import Scenario
@@ -34,8 +33,13 @@ from laglab.tables import say
 from laglab_gateway import FileRecorder, Patience, Surroundings
 from laglab_protocol import Endpoint, Listener, open_endpoint, refuse_open_door
 
-ENDPOINT_HELP = "udpin://HOST:PORT, udpout://HOST:PORT, serial:///dev/ttyX:BAUD or pty://PATH."
-
+EndpointOption = Annotated[
+    str,
+    typer.Option(
+        metavar="URL",
+        help="udpin://HOST:PORT, udpout://HOST:PORT, serial:///dev/ttyX:BAUD or pty://PATH.",
+    ),
+]
 UnsignedOption = Annotated[
     bool,
     typer.Option(
@@ -64,9 +68,7 @@ def _say_whom_we_wait_for(other: str, link: Endpoint) -> None:
 @on_scenario
 def gateway(
     scenario: Scenario,
-    endpoint: Annotated[
-        str, typer.Option(metavar="URL", help=ENDPOINT_HELP)
-    ] = "udpin://127.0.0.1:14550",
+    endpoint: EndpointOption = "udpin://127.0.0.1:14550",
     watch: Annotated[
         list[str] | None,
         typer.Option(metavar="URL", help="A ground station may look on there; may be repeated."),
@@ -132,9 +134,7 @@ def _opened(urls: Sequence[str]) -> Iterator[list[Endpoint]]:
 @on_scenario
 def controller(
     scenario: Scenario,
-    endpoint: Annotated[
-        str, typer.Option(metavar="URL", help=ENDPOINT_HELP)
-    ] = "udpout://127.0.0.1:14550",
+    endpoint: EndpointOption = "udpout://127.0.0.1:14550",
     out: OutOption = None,
     force: ForceOption = False,
     key: KeyOption = None,
@@ -151,15 +151,10 @@ def controller(
             directory = place(scenario, out, force, suffix="-station")
             _say_whom_we_wait_for("the robot", link)
             with progress_of(scenario) as told:
-                record = _station_record(scenario, directory, told)
+                glance = StationGlance(scenario) if scenario.pace == "realtime" else None
+                clock = LoopClock(lambda tick: told(tick, glance.now() if glance else None))
+                record = StationRecord(directory, scenario.sample_time, _warn, clock, glance)
                 onlooker = watched_station(record, page.line if page else None, station, link)
                 listener = Listener(link, receiver)
-                ending = answer_alone(station, listener, scenario.silence_timeout, onlooker)
+                ending = answer_alone(station, listener, scenario.silence_timeout, onlooker, clock)
             conclude(scenario, way, ending, directory, report, page)
-
-
-def _station_record(scenario: Scenario, directory: Path, told: Told) -> StationRecord:
-    """Tells how the run is now and then, where it goes by the clock."""
-    glance = StationGlance(scenario) if scenario.pace == "realtime" else None
-    progress = LoopClock(lambda tick: told(tick, glance.now() if glance else None))
-    return StationRecord(directory, scenario.sample_time, _warn, progress, glance)

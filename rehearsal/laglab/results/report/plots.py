@@ -97,7 +97,10 @@ def time_plots(
     return plots
 
 
-def _plot(axes: Axes, title: str, values: DataRange1d | FactorRange, height: int) -> figure:
+def _plot(
+    axes: Axes, title: str, values: FactorRange | None = None, height: int = HEIGHT
+) -> figure:
+    """Of its kind, which the title says; on its own values, or those given."""
     plot = figure(
         title=heading(title),
         height=height,
@@ -105,7 +108,7 @@ def _plot(axes: Axes, title: str, values: DataRange1d | FactorRange, height: int
         tools=TOOLS,
         active_drag="box_zoom",
         x_range=axes.time,
-        y_range=values,
+        y_range=axes.values(title) if values is None else values,
         min_border_left=84,
         min_border_right=8,
         output_backend="canvas",
@@ -145,7 +148,7 @@ def legend_above(plot: figure) -> None:
 
 
 def _lines(sources: Sources, axes: Axes, title: str, lines: Sequence[Line]) -> figure:
-    plot = _plot(axes, title, axes.values(title), HEIGHT)
+    plot = _plot(axes, title)
     for line in lines:
         _add(plot, sources, line)
     legend_above(plot)
@@ -172,8 +175,7 @@ def _add(plot: figure, sources: Sources, line: Line) -> None:
 def _error_plot(
     sources: Sources, axes: Axes, axis: str, label: str, unit: str, shadows: Sequence[str]
 ) -> figure:
-    title = f"error of the estimate in {label} [{unit}]"
-    plot = _plot(axes, title, axes.values(title), HEIGHT)
+    plot = _plot(axes, f"error of the estimate in {label} [{unit}]")
     plot.varea(
         "time",
         f"{axis}_below",
@@ -198,8 +200,7 @@ def _speed_plot(sources: Sources, axes: Axes, name: str, title: str) -> figure:
 
 
 def _delay_plot(sources: Sources, axes: Axes) -> figure:
-    title = "delay of what came [ticks]"
-    plot = _plot(axes, title, axes.values(title), HEIGHT)
+    plot = _plot(axes, "delay of what came [ticks]")
     looks = (
         (sources.commands, "commands", RED, "circle"),
         (sources.measurements, "measurements", BLUE, "x"),
@@ -223,8 +224,8 @@ def _delay_plot(sources: Sources, axes: Axes) -> figure:
 
 
 def _mark_plot(sources: Sources, axes: Axes) -> figure:
-    title = "lost, by cause; refused; stops; alarms"
-    plot = _plot(axes, title, FactorRange(factors=list(LANES)), HEIGHT)
+    lanes = FactorRange(factors=list(LANES))
+    plot = _plot(axes, "lost, by cause; refused; stops; alarms", lanes)
     for cause, (marker, color) in CAUSES.items():
         view = CDSView(filter=GroupFilter(column_name="what", group=cause))
         plot.scatter(
@@ -253,8 +254,7 @@ def _mark_plot(sources: Sources, axes: Axes) -> figure:
 
 
 def _timing_plot(sources: Sources, axes: Axes) -> figure:
-    title = "ticks began late by [ms]"
-    plot = _plot(axes, title, axes.values(title), 150)
+    plot = _plot(axes, "ticks began late by [ms]", height=150)
     plot.scatter("time", "late", source=sources.timing, size=3, color=BLACK)
     return plot
 

@@ -81,8 +81,7 @@ def wired(scenario: Scenario) -> tuple[Path, Wiring]:
     """Which FMU, and its map. Raises FmuNotBuiltError: one of ours is not there."""
     plant = scenario.plant
     if plant.fmu is not None:
-        told = plant.wired_inputs, plant.wired_outputs, plant.wired_start, plant.parameters
-        return plant.fmu, Wiring(*told)
+        return plant.fmu, Wiring(**plant.names, parameters=plant.parameters)
     names = {name: name for name in (*POSE_NAMES, *MEASURED)}
     start = {name: f"{name}_start" for name in POSE_NAMES}
     own = Wiring(

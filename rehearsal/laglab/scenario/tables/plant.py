@@ -217,19 +217,10 @@ class PlantTable(Table):
         return self
 
     @property
-    def wired_inputs(self) -> dict[str, str]:
-        """Ours → the FMU's."""
-        return named(self.inputs)
-
-    @property
-    def wired_outputs(self) -> dict[str, str]:
-        """Ours → the FMU's, the pose first."""
-        return named(self.outputs)
-
-    @property
-    def wired_start(self) -> dict[str, str]:
-        """Ours → the FMU's, those of x, y, theta that can be said."""
-        return named(self.start)
+    def names(self) -> dict[str, dict[str, str]]:
+        """Of `inputs`, `outputs` (the pose first) and `start`: ours → the FMU's."""
+        tables = {"inputs": self.inputs, "outputs": self.outputs, "start": self.start}
+        return {key: named(table) for key, table in tables.items()}
 
     @property
     def is_mapped(self) -> bool:

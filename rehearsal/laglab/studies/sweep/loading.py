@@ -14,7 +14,7 @@ from laglab.scenario.loading import made_of
 from laglab.scenario.model import FILES, plain
 from laglab.scenario.paths import anchored
 from laglab.scenario.tables.table import Table
-from laglab.scenario.toml import parsed
+from laglab.scenario.toml import parsed, read_by_name, shipped_in
 from laglab.studies.sweep.study import Study
 from laglab_control import FAR
 from laglab_gateway.values import Positive, Whole, saying, wording
@@ -59,7 +59,7 @@ def load_study(
     """By its shipped name, or by a path to a TOML file; `overrides` beat the scenario, `seeds` the
     study's own. Raises: StudyError, ScenarioError.
     """
-    text, path = _read(reference)
+    text, path = read_by_name(reference, SHIPPED, "study", StudyError)
     study, _ = study_of(text, reference, path, overrides or {}, seeds)
     return study
 
@@ -142,20 +142,4 @@ def shipped_studies() -> dict[str, Study]:
 
 def shipped_study_names() -> list[str]:
     """Of those that come with the package."""
-    names = (Path(file.name) for file in SHIPPED.iterdir())
-    return sorted(name.stem for name in names if name.suffix == ".toml")
-
-
-def _read(reference: str) -> tuple[str, Path]:
-    path = Path(reference)
-    if reference in shipped_study_names():
-        path = Path(str(SHIPPED / f"{reference}.toml"))
-    try:
-        return path.read_text(encoding="utf-8"), path
-    except (FileNotFoundError, IsADirectoryError):
-        names = ", ".join(shipped_study_names())
-        raise StudyError(
-            f"{reference}: no such study; shipped: {names}; or give a path to a TOML file"
-        ) from None
-    except (OSError, ValueError) as error:
-        raise StudyError(f"{reference}: not a readable TOML file: {error}") from None
+    return shipped_in(SHIPPED)
