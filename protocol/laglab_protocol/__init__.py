@@ -19,6 +19,7 @@ from laglab_protocol.errors import (
     PortBusyError,
     ProtocolError,
     SettingsError,
+    TlogError,
     UnsignedLinkError,
 )
 from laglab_protocol.framing.frame import Frame, Refusal, decode
@@ -124,7 +125,7 @@ from laglab_protocol.settings import differences, refuse_other_sample_time
 from laglab_protocol.signing.keys import Codec, make_key, read_key, refuse_open_door
 from laglab_protocol.signing.signature import EVERY_MESSAGE
 from laglab_protocol.timing import Durations, Quantiles
-from laglab_protocol.tlog import TlogError, read_tlog, tlog_record
+from laglab_protocol.tlog import read_tlog, tlog_record
 
 __all__ = [
     "EVERY_MESSAGE",

@@ -43,3 +43,7 @@ class KeyFileError(ProtocolError):
 
 class UnsignedLinkError(ProtocolError):
     """An endpoint that strangers can reach, and no key."""
+
+
+class TlogError(ProtocolError):
+    """The file is no telemetry log."""

@@ -4,15 +4,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
 
-from laglab_protocol.errors import ProtocolError
+from laglab_protocol.errors import TlogError
 from laglab_protocol.framing.frame import START, Frame, Refusal, decode, extent
 
 STAMP_SIZE = 8
 PIECE = 1 << 20
-
-
-class TlogError(ProtocolError):
-    """The file is no telemetry log."""
 
 
 def tlog_record(time_us: int, frame: bytes) -> bytes:

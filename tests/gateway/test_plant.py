@@ -32,11 +32,11 @@ from laglab_gateway import (
 )
 from laglab_protocol import (
     STATION_COMPONENT,
+    STATION_HEARTBEAT,
     STATION_SYSTEM,
     Command,
     End,
     EndReason,
-    Heartbeat,
     Listener,
     Measurement,
     Receiver,
@@ -246,7 +246,7 @@ def test_a_robot_that_never_speaks_is_named(tmp_path: Path) -> None:
         open_endpoint("udpin://127.0.0.1:0") as endpoint,
         open_endpoint(endpoint.name.replace("udpin", "udpout")) as station,
     ):
-        station.send(Sender(STATION_SYSTEM, STATION_COMPONENT).frame(Heartbeat(0, 6, 8, 0, 4, 3)))
+        station.send(Sender(STATION_SYSTEM, STATION_COMPONENT).frame(STATION_HEARTBEAT))
         patience = Patience(silence=0.9)
         around = Surroundings(Listener(endpoint, Receiver()), patience=patience)
         with pytest.raises(PlantSilentError, match="the robot never spoke") as silent:

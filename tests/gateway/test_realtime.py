@@ -23,11 +23,11 @@ from laglab_protocol import (
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
     STATION_COMPONENT,
+    STATION_HEARTBEAT,
     STATION_SYSTEM,
     Command,
     End,
     EndReason,
-    Heartbeat,
     Link,
     Listener,
     Message,
@@ -62,7 +62,7 @@ class SimulatedLink(Link):
         self._oversleep = oversleep
         self._sender = Sender(STATION_SYSTEM, STATION_COMPONENT)
         self._receiver = Receiver()
-        hello = self._sender.frame(Heartbeat(0, 6, 8, 0, 4, 3))
+        hello = self._sender.frame(STATION_HEARTBEAT)
         self._inbox: list[tuple[float, bytes]] = [(self.time, hello)]
 
     def now(self) -> float:

@@ -15,11 +15,11 @@ from laglab_protocol import (
     EVERY_MESSAGE,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
+    STATION_HEARTBEAT,
     Codec,
     CommandAck,
     CommandLong,
     Endpoint,
-    Heartbeat,
     Listener,
     LocalPositionNed,
     Message,
@@ -35,7 +35,6 @@ from laglab_protocol import (
 from laglab_protocol.dialect.generated import laglab as mavlink
 
 STATE = RobotState(0, 3.0, 4.0, 0.0, 0.0, 0.0)
-GCS = Heartbeat(0, 6, 8, 0, 4, 3)
 
 
 class Watched:
@@ -87,7 +86,7 @@ def test_two_on_one_link_are_served_apart(
     """Each sees the telemetry at its own pace, and its own answers; none sees a gap."""
     first, second = station(), station()
     for each, system in ((first, 255), (second, 254)):
-        each.send(Sender(system, 190).frame(GCS))
+        each.send(Sender(system, 190).frame(STATION_HEARTBEAT))
     watched.for_a_while(0.05)
     slower = CommandLong(32.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 511, 1, 1, 0)
     second.send(Sender(254, 190).frame(slower))
@@ -156,7 +155,7 @@ def test_a_serial_watcher_that_never_reads_costs_the_loop_nothing(
     longest, began = 0.0, time.monotonic()
     while not (lost := watched.watch.take_lost()) and time.monotonic() < began + 10:
         started = time.perf_counter()
-        watched.watch.tell([GCS] * 50)
+        watched.watch.tell([STATION_HEARTBEAT] * 50)
         longest = max(longest, time.perf_counter() - started)
         time.sleep(0.01)
     assert lost == [line.name], "let go in the end"

@@ -35,5 +35,5 @@ def test_the_tests_it_names_exist() -> None:
     named = set(re.findall(r"`(test_\w+\.py)`", README))
 
     assert named
-    assert all(list(here.parent.glob(f"*/{name}")) for name in named)
+    assert all(list(here.parent.rglob(name)) for name in named)
     assert (here / "golden.py").is_file()

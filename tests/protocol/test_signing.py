@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from msgspec.structs import astuple
 
 from laglab_conformance.forge import Forged
-from laglab_protocol import Command, Heartbeat, Receiver, Refusal, Sender
+from laglab_protocol import STATION_HEARTBEAT, Command, Receiver, Refusal, Sender
 from laglab_protocol.dialect.generated import laglab as dialect
 from laglab_protocol.framing.frame import SIGNED
 from laglab_protocol.signing.signature import CLOCK_EVERY, MINUTE, Signer, Timestamps, Verifier
@@ -22,7 +22,6 @@ OTHER_KEY = bytes(32)
 STREAM = (0, 200, 190)
 NOW = 37_000_000_000_000
 COMMAND = Command(0.5, -1.0, 7, 1, 1, 0)
-HEARTBEAT = Heartbeat(0, 6, 8, 0, 4, 3)
 
 
 def signer(now: int = NOW, key: bytes = KEY, stream: tuple[int, int, int] = STREAM) -> Signer:
@@ -94,7 +93,7 @@ REJECTS = {
     "a clock in 2050": (signed(NOW + 10**10), Refusal.AHEAD),
     "a new stream with a clock in 2050": (signed(NOW + 10**10, stream=(3, 9, 9)), Refusal.AHEAD),
     "unsigned": (encode(COMMAND, 200, 190, 1), Refusal.UNSIGNED),
-    "unsigned, though a heartbeat": (encode(HEARTBEAT, 200, 190, 1), Refusal.UNSIGNED),
+    "unsigned, though a heartbeat": (encode(STATION_HEARTBEAT, 200, 190, 1), Refusal.UNSIGNED),
     "an unknown incompatibility flag": (flagged(0x02), Refusal.INCOMPATIBLE),
     "signed and another flag": (flagged(SIGNED | 0x02, signer()), Refusal.INCOMPATIBLE),
 }
@@ -126,9 +125,9 @@ def test_mavlink_1_is_never_heard() -> None:
 def test_unsigned_passes_by_name_only() -> None:
     listening = Listening(frozenset({"HEARTBEAT"}))
 
-    assert listening.hears(encode(HEARTBEAT, 200, 190, 0))
+    assert listening.hears(encode(STATION_HEARTBEAT, 200, 190, 0))
     assert not listening.hears(encode(COMMAND, 200, 190, 1))
-    bad = Sender(200, 190, signer(key=OTHER_KEY)).frame(HEARTBEAT)
+    bad = Sender(200, 190, signer(key=OTHER_KEY)).frame(STATION_HEARTBEAT)
     assert not listening.hears(bad)
 
 

@@ -64,9 +64,9 @@ class Parameters:
             case ParamRequestList():
                 return [self._value(name) for name in self._table]
             case ParamRequestRead(index, _, _, name):
-                return self._read(self._find(index, name), frame, index, name)
+                return self._read(frame, index, name)
             case ParamSet(value, _, _, name):
-                return self._set(self._find(BY_NAME, name), frame, value, trusted)
+                return self._set(frame, name, value, trusted)
         return []
 
     def _find(self, index: int, name: bytes) -> str | None:
@@ -76,14 +76,15 @@ class Parameters:
             return text if text in self._table else None
         return names[index] if 0 <= index < len(names) else None
 
-    def _read(self, found: str | None, frame: Frame, index: int, name: bytes) -> list[Message]:
+    def _read(self, frame: Frame, index: int, name: bytes) -> list[Message]:
+        found = self._find(index, name)
         if found is None:
             return [_error(frame, index, name, mavlink.MAV_PARAM_ERROR_DOES_NOT_EXIST)]
         return [self._value(found)]
 
-    def _set(self, found: str | None, frame: Frame, value: float, trusted: bool) -> list[Message]:
+    def _set(self, frame: Frame, name: bytes, value: float, trusted: bool) -> list[Message]:
         """Answered with the value that holds now, so that a refusal shows in old clients too."""
-        name = frame.message.param_id  # type: ignore[attr-defined]
+        found = self._find(BY_NAME, name)
         if found is None:
             return [_error(frame, BY_NAME, name, mavlink.MAV_PARAM_ERROR_DOES_NOT_EXIST)]
         refused = self._table[found].refuses(value) if trusted else NOT_PERMITTED

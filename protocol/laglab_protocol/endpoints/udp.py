@@ -163,23 +163,16 @@ class UdpOut(_Udp):
 
     def send(self, data: bytes, to: Address | None = None) -> None:
         del to  # there is only one far end
-        try:
-            self._socket.send(data)
-        except BlockingIOError:
-            return  # no room: lost, as on any way
-        except NOBODY_THERE:
-            self._send_again(data)
-        except OSError as error:
-            raise _cannot("send to", self.name, error) from error
-
-    def _send_again(self, data: bytes) -> None:
-        """The refusal belonged to an earlier datagram, and this one was not sent."""
-        try:
-            self._socket.send(data)
-        except (BlockingIOError, *NOBODY_THERE):
+        for _ in range(2):
+            try:
+                self._socket.send(data)
+            except BlockingIOError:
+                return  # no room: lost, as on any way
+            except NOBODY_THERE:
+                continue  # an earlier one found nobody, and this one was not sent
+            except OSError as error:
+                raise _cannot("send to", self.name, error) from error
             return
-        except OSError as error:
-            raise _cannot("send to", self.name, error) from error
 
     def _read(self) -> bytes | None:
         try:

@@ -7,9 +7,9 @@ from typing import NamedTuple
 from laglab_protocol import (
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
+    STATION_HEARTBEAT,
     Command,
     Endpoint,
-    Heartbeat,
     Measurement,
     Message,
     Receiver,
@@ -20,9 +20,6 @@ SPEED = 4.0
 
 
 PERIOD = 0.01 / SPEED
-
-
-HEARTBEAT = Heartbeat(0, 6, 8, 0, 4, 3)
 
 
 class Line(NamedTuple):
@@ -73,7 +70,7 @@ def begin(line: Line) -> Measurement:
     """Its first measurement; the robot may take a moment to open the port."""
     heard: list[Message] = []
     while not heard:
-        line.say(HEARTBEAT)
+        line.say(STATION_HEARTBEAT)
         heard = line.hear(0.02)
     assert isinstance(heard[0], Measurement)
     return heard[0]

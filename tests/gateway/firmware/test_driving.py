@@ -15,6 +15,7 @@ from laglab_protocol import (
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
     STATION_COMPONENT,
+    STATION_HEARTBEAT,
     STATION_SYSTEM,
     Command,
     CommandAck,
@@ -32,7 +33,7 @@ from laglab_protocol import (
 )
 from laglab_protocol.signing.signature import MINUTE, Signer, Verifier, signing_time
 
-from .line import HEARTBEAT, PERIOD, Line, begin, command
+from .line import PERIOD, Line, begin, command
 
 
 def test_a_request_to_another_robot_is_not_answered(line: Line) -> None:
@@ -127,7 +128,7 @@ def test_who_signs_far_ahead_of_its_clock_is_refused_and_locks_nobody_out(
         early = Line(endpoint, Sender(STATION_SYSTEM, STATION_COMPONENT, ahead), receiver)
         heard: list[Message] = []
         for _ in range(20):
-            early.say(HEARTBEAT)
+            early.say(STATION_HEARTBEAT)
             heard += early.hear(0.02)
         assert heard == []
         signer = Signer(key, stream)

@@ -12,7 +12,7 @@ import pytest
 from laglab_conformance import Waits, conform
 from laglab_protocol import open_endpoint
 
-ROBOT = Path(__file__).parents[2] / "examples" / "pymavlink_robot.py"
+ROBOT = Path(__file__).parents[3] / "examples" / "pymavlink_robot.py"
 MISSED = {
     "a false start before a frame costs nothing",
     "it tells its settings",
