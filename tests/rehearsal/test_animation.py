@@ -1,12 +1,13 @@
 """Moving pictures: the command makes one, and the README opens with one that it made."""
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from PIL import Image
 
 import laglab
-from laglab.command import main
 from laglab.results.figures.moving import Scene
 from laglab.results.figures.shown import shown
 
@@ -16,14 +17,12 @@ MOST = 1_000_000
 
 
 @pytest.mark.slow
-def test_the_robots_move_side_by_side(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_robots_move_side_by_side(tmp_path: Path, ended: Callable[..., Any]) -> None:
     for name in ("fig5", "fig6"):
         laglab.run(name, {"duration": 0.5}, out=tmp_path / name)
     out = tmp_path / "both.gif"
-    with pytest.raises(SystemExit) as ended:
-        main(["animate", str(tmp_path / "fig5"), str(tmp_path / "fig6"), "--out", str(out)])
-    assert ended.value.code == 0
-    assert capsys.readouterr().out.strip() == str(out)
+    done = ended("animate", tmp_path / "fig5", tmp_path / "fig6", "--out", out)
+    assert (done.code, done.out.strip()) == (0, str(out))
     assert [each.name for each in tmp_path.iterdir() if each.is_file()] == ["both.gif"]
     with Image.open(out) as picture:
         assert picture.n_frames == 5  # type: ignore[attr-defined]
@@ -44,11 +43,9 @@ def test_each_robot_is_drawn_where_it_was() -> None:
         assert place == pytest.approx(true, abs=0.02 * size)
 
 
-def test_what_is_no_gif_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as ended:
-        main(["animate", "run", "--out", "run.mp4"])
-    assert ended.value.code == 2
-    assert capsys.readouterr().err == "laglab: --out run.mp4: its name must end in gif\n"
+def test_what_is_no_gif_is_refused(refused: Callable[..., str]) -> None:
+    line = refused("animate", "run", "--out", "run.mp4")
+    assert line == "laglab: --out run.mp4: its name must end in gif"
 
 
 def test_the_readme_opens_with_a_figure_and_a_moving_picture() -> None:

@@ -1,7 +1,9 @@
 """What the figures show, by their artists; not by their pixels."""
 
+from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +12,6 @@ from matplotlib.figure import Figure
 from matplotlib.quiver import Quiver
 
 import laglab
-from laglab.command import main
 from laglab.results.figures import INCHES, Width, draw_runs, legend, printed, sheet
 from laglab.results.link_view import link_view
 from laglab.scenario import load
@@ -233,15 +234,13 @@ def test_a_long_run_shows_its_rarest_delay_and_loss(monkeypatch: pytest.MonkeyPa
 
 @pytest.mark.parametrize("ending", ["png", "pdf", "svg"])
 def test_figure_draws_again_in_the_format_of_the_name(
-    ending: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    ending: str, tmp_path: Path, ended: Callable[..., Any]
 ) -> None:
     laglab.run("lab", {"duration": 0.5}, out=tmp_path / "run")
     trace = (tmp_path / "run" / "trace.csv").read_bytes()
     out = tmp_path / f"again.{ending}"
-    with pytest.raises(SystemExit) as ended:
-        main(["figure", str(tmp_path / "run"), "--out", str(out), "--width", "one"])
-    assert ended.value.code == 0
-    assert capsys.readouterr().out.strip() == str(out)
+    done = ended("figure", tmp_path / "run", "--out", out, "--width", "one")
+    assert (done.code, done.out.strip()) == (0, str(out))
     begins = {"png": b"\x89PNG", "pdf": b"%PDF", "svg": b"<?xml"}
     assert out.read_bytes().startswith(begins[ending])
     assert (tmp_path / "run" / "trace.csv").read_bytes() == trace

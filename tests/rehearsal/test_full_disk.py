@@ -20,6 +20,7 @@ Laglab = Callable[..., subprocess.CompletedProcess[str]]
 
 LONG = ("lab", "--duration", "3600")
 HERE = ("--endpoint", "udpin://127.0.0.1:0")
+SIDES = ("gateway", "controller")
 FULL = (
     r"laglab: cannot record small/run/\S+ any further: (No space left on device|File too large): "
     "what was written up to here is whole; make room, then run again"
@@ -97,31 +98,18 @@ def test_of_a_run_that_records_the_link_and_the_clock_too(small_disk: SmallDisk)
         assert (small_disk.kept / "run" / name).read_text().endswith("\n")
 
 
-def test_of_the_gateway_alone(
-    small_disk: SmallDisk, start: Start, listening_port: ListeningPort
+@pytest.mark.parametrize("full", ["gateway", "controller"])
+def test_of_one_side_alone(
+    small_disk: SmallDisk, start: Start, listening_port: ListeningPort, full: str
 ) -> None:
-    gateway = small_disk.start("gateway", *LONG, *HERE)
-    station = start(
-        "controller", *LONG, "--endpoint", f"udpout://127.0.0.1:{listening_port(gateway)}"
-    )
-    assert_one_line(said(gateway, 4), FULL)
-    output, _ = station.communicate(timeout=20)
-    assert station.returncode == 4
-    assert "the other side failed" in output
-    small_disk.assert_whole()
-
-
-def test_of_the_controller_alone(
-    small_disk: SmallDisk, start: Start, listening_port: ListeningPort
-) -> None:
-    gateway = start("gateway", *LONG, *HERE, "--out", "robot")
-    station = small_disk.start(
-        "controller", *LONG, "--endpoint", f"udpout://127.0.0.1:{listening_port(gateway)}"
-    )
-    assert_one_line(said(station, 4), FULL)
-    output, _ = gateway.communicate(timeout=20)
-    assert gateway.returncode == 4
-    assert "the other side failed" in output
+    begin = {side: small_disk.start if side == full else start for side in SIDES}
+    gateway = begin["gateway"]("gateway", *LONG, *HERE)
+    met = f"udpout://127.0.0.1:{listening_port(gateway)}"
+    station = begin["controller"]("controller", *LONG, "--endpoint", met)
+    ends, other = (gateway, station) if full == "gateway" else (station, gateway)
+    assert_one_line(said(ends, 4), FULL)
+    assert "the other side failed" in other.communicate(timeout=20)[0]
+    assert other.returncode == 4
     small_disk.assert_whole()
 
 

@@ -1,14 +1,17 @@
 """Where results cannot go: one line, exit 2, before anything runs, and nothing is touched."""
 
 import shutil
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from laglab.command import main
+import laglab
 from laglab.errors import ResultsError
 from laglab.files import file_place, whole_file, write_whole
 
+Refused = Callable[..., str]
 LONG_NAME = "x" * 300
 NO_FOLDERS = ["file", "file/below", "/proc/none", LONG_NAME]
 NO_FILES = ["folder", "file/below", "none/below", "/proc/none", LONG_NAME]
@@ -38,9 +41,7 @@ INTO_A_FILE = {
 def a_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What a run left."""
     folder = tmp_path_factory.mktemp("whole") / "run"
-    options = ("--duration", "0.1", "--transport", "inline", "--out", str(folder))
-    with pytest.raises(SystemExit):
-        main(["run", "fig6", *options])
+    laglab.run("fig6", {"duration": 0.1}, out=folder)
     return folder
 
 
@@ -54,90 +55,78 @@ def here(tmp_path: Path, a_run: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def refused(arguments: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> str:
+@pytest.fixture
+def in_vain(refused: Refused) -> Refused:
     """The one line that is said, and nothing was done."""
-    before = sorted(Path.cwd().rglob("*"))
-    capsys.readouterr()
-    with pytest.raises(SystemExit) as ended:
-        main([*arguments])
-    said = capsys.readouterr()
-    assert (ended.value.code, said.out) == (2, "")
-    assert sorted(Path.cwd().rglob("*")) == before
-    assert Path("file").read_text() == "kept"
-    (line,) = said.err.splitlines()
-    assert line.startswith("laglab: ")
-    return line
+
+    def call(*arguments: str) -> str:
+        before = sorted(Path.cwd().rglob("*"))
+        line = refused(*arguments)
+        assert sorted(Path.cwd().rglob("*")) == before
+        assert Path("file").read_text() == "kept"
+        return line
+
+    return call
 
 
 @pytest.mark.parametrize("place", NO_FOLDERS)
 @pytest.mark.parametrize("command", INTO_A_FOLDER)
-def test_no_folder_can_be_there(
-    command: str, place: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert place in refused((*INTO_A_FOLDER[command], place), capsys)
+def test_no_folder_can_be_there(command: str, place: str, in_vain: Refused) -> None:
+    assert place in in_vain(*INTO_A_FOLDER[command], place)
 
 
 @pytest.mark.parametrize("place", NO_FILES)
 @pytest.mark.parametrize("command", INTO_A_FILE)
-def test_no_file_can_be_there(command: str, place: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert place in refused((*INTO_A_FILE[command], place), capsys)
+def test_no_file_can_be_there(command: str, place: str, in_vain: Refused) -> None:
+    assert place in in_vain(*INTO_A_FILE[command], place)
 
 
 @pytest.mark.parametrize("place", NO_FILES)
 @pytest.mark.parametrize("command", PICTURES)
-def test_no_picture_can_be_there(
-    command: str, place: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_no_picture_can_be_there(command: str, place: str, in_vain: Refused) -> None:
     Path("folder.png").mkdir()
-    assert f"{place}.png" in refused((*PICTURES[command], f"{place}.png"), capsys)
+    assert f"{place}.png" in in_vain(*PICTURES[command], f"{place}.png")
 
 
 @pytest.mark.parametrize("name", ["picture", "picture.xyz", ".png", "", "/dev/null"])
 @pytest.mark.parametrize("command", PICTURES)
-def test_a_picture_of_no_known_kind(
-    command: str, name: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert "its name must end in one of" in refused((*PICTURES[command], name), capsys)
+def test_a_picture_of_no_known_kind(command: str, name: str, in_vain: Refused) -> None:
+    assert "its name must end in one of" in in_vain(*PICTURES[command], name)
 
 
 @pytest.mark.parametrize("command", ["run", "gateway", "controller"])
-def test_another_runs_results_are_taken_only_by_force(
-    command: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_another_runs_results_are_taken_only_by_force(command: str, in_vain: Refused) -> None:
     before = Path("run/trace.csv").read_bytes()
-    line = refused((*INTO_A_FOLDER[command], "run"), capsys)
+    line = in_vain(*INTO_A_FOLDER[command], "run")
     assert "another run's results are there already" in line
     assert "--force" in line
     assert Path("run/trace.csv").read_bytes() == before
 
 
-def test_force_leaves_nothing_of_the_other_run() -> None:
+def test_force_leaves_nothing_of_the_other_run(ended: Callable[..., Any]) -> None:
     shadow, notes = Path("run/shadow-ekf.csv"), Path("run/notes.txt")
     shadow.write_text("of the other run")
     notes.write_text("somebody's own")
     options = ("--duration", "0.2", "--transport", "inline", "--out", "run", "--force")
-    with pytest.raises(SystemExit) as ended:
-        main(["run", "fig6", *options])
-    assert ended.value.code == 0
+    assert ended("run", "fig6", *options).code == 0
     assert not shadow.exists()
     assert notes.read_text() == "somebody's own"
 
 
-def test_what_cannot_be_removed_is_not_forced(capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_cannot_be_removed_is_not_forced(in_vain: Refused) -> None:
     Path("folder/trace.csv").mkdir()
-    line = refused(("run", "fig6", "--out", "folder", "--force"), capsys)
+    line = in_vain("run", "fig6", "--out", "folder", "--force")
     assert line.startswith("laglab: cannot write into folder: ")
 
 
 @pytest.mark.parametrize("name", ["../../evil", "/tmp/evil", "a b", "x" * 300])
 def test_the_name_of_a_scenario_is_no_path(
-    name: str, here: Path, capsys: pytest.CaptureFixture[str]
+    name: str, here: Path, ended: Callable[..., Any]
 ) -> None:
     Path("own.toml").write_text(f'name = "{name}"\nduration = 0.1\n')
-    with pytest.raises(SystemExit) as ended:
-        main(["run", "own.toml", "--transport", "inline"])
-    assert ended.value.code == (2 if len(name) > 255 else 0)
-    assert "Traceback" not in capsys.readouterr().err
+    done = ended("run", "own.toml", "--transport", "inline")
+    assert done.code == (2 if len(name) > 255 else 0)
+    assert "Traceback" not in done.err
     assert all(path.parent == here / "runs" for path in here.glob("runs/*"))
     assert not (here.parent / "evil").exists()
 
@@ -145,10 +134,10 @@ def test_the_name_of_a_scenario_is_no_path(
 @pytest.mark.parametrize(
     ("name", "begins"), [("x.pdf", b"%PDF"), ("x.svg", b"<?xml"), ("x.PNG", b"\x89PNG")]
 )
-def test_the_kind_of_a_picture_is_that_of_its_name(name: str, begins: bytes) -> None:
-    with pytest.raises(SystemExit) as ended:
-        main(["compare", "run", "run", "--out", name])
-    assert ended.value.code == 0
+def test_the_kind_of_a_picture_is_that_of_its_name(
+    name: str, begins: bytes, ended: Callable[..., Any]
+) -> None:
+    assert ended("compare", "run", "run", "--out", name).code == 0
     assert Path(name).read_bytes().startswith(begins)
 
 

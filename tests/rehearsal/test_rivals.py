@@ -36,7 +36,7 @@ def test_the_command_leaves_table_and_picture(
     tmp_path: Path, ended: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    options = ["--seeds", "1", "--on", "ideal", "--on", "outages", "--workers", "2"]
+    options = ["--seeds", "1", "--on", "ideal", "--on", "outages", "--workers", "1"]
     chosen = ["--only", "raw", "--only", "plans", "--only", "guarded", "--out", "met.pdf"]
     code, out, _ = ended("rivals", "lab", *options, *chosen)
     assert code == 0

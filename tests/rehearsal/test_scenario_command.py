@@ -7,11 +7,11 @@ import sys
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from jsonschema import Draft202012Validator
 
-from laglab.command import main
 from laglab.scenario import Scenario, load, shipped
 from laglab.scenario.explain import explained, spelled
 from laglab.scenario.keys import rows
@@ -26,15 +26,13 @@ UNITS = {
 
 
 @pytest.fixture
-def printed(capsys: pytest.CaptureFixture[str]) -> Printed:
+def printed(ended: Callable[..., Any]) -> Printed:
     """What ``laglab scenario ARGUMENTS`` prints."""
 
     def call(*arguments: str) -> str:
-        with pytest.raises(SystemExit) as ended:
-            main(["scenario", *arguments])
-        output = capsys.readouterr()
-        assert (ended.value.code, output.err) == (0, "")
-        return output.out
+        code, out, err = ended("scenario", *arguments)
+        assert (code, err) == (0, "")
+        return str(out)
 
     return call
 
@@ -188,16 +186,15 @@ def test_the_schema_refuses_what_we_refuse(wrong: dict[str, object]) -> None:
 
 @pytest.mark.parametrize("text", ["", "# nothing yet\n", 'description = "mine"\n'])
 def test_an_empty_file_says_what_it_runs_as_and_runs(
-    tmp_path: Path, text: str, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, text: str, ended: Callable[..., Any]
 ) -> None:
     own = tmp_path / "own.toml"
     own.write_text(text)
     options = ("-n", "7", "--duration", "0.1", "--transport", "inline")
-    with pytest.raises(SystemExit) as ended:
-        main(["run", str(own), *options, "--out", str(tmp_path / "run")])
-    assert ended.value.code == 0
+    done = ended("run", own, *options, "--out", tmp_path / "run")
+    assert done.code == 0
     said = f"{own} sets nothing, so it runs by default: popf, n = 7, m = 20, noise off"
-    assert [line for line in capsys.readouterr().err.splitlines() if "own.toml" in line] == [said]
+    assert [line for line in done.err.splitlines() if "own.toml" in line] == [said]
 
 
 def test_whoever_says_something_is_not_told(printed: Printed, tmp_path: Path) -> None:

@@ -7,7 +7,8 @@ from laglab.studies.trust import CONDITIONS, Fared, Trial, scores, stations
 
 def test_the_command_leaves_table_and_picture(tmp_path, ended, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    code, page, _ = ended("trust", "--seeds", "1", "--only", "moved by 0.5 m", "--only", "lab")
+    options = ("--seeds", "1", "--workers", "1", "--only", "moved by 0.5 m", "--only", "lab")
+    code, page, _ = ended("trust", *options)
     assert code == 0
     assert "of the position [m];" in page
     moved, lab = (

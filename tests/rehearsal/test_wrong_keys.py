@@ -49,14 +49,14 @@ def test_what_is_no_key_is_told_before_anything_runs(
 
 
 @pytest.mark.parametrize(
-    ("listens", "calls", "why"),
+    ("side", "listens", "calls", "why"),
     [
-        (("--key", "ours"), ("--key", "theirs"), "not signed with this key"),
-        (("--key", "ours"), (), "not signed: give the sender the same --key"),
-        ((), ("--key", "theirs"), "signed, and there is no key here"),
+        ("gateway", ("--key", "ours"), ("--key", "theirs"), "not signed with this key"),
+        ("gateway", ("--key", "ours"), (), "not signed: give the sender the same --key"),
+        ("gateway", (), ("--key", "theirs"), "signed, and there is no key here"),
+        ("controller", ("--key", "ours"), ("--key", "theirs"), "not signed with this key"),
     ],
 )
-@pytest.mark.parametrize("side", ["gateway", "controller"])
 def test_who_listens_soon_names_a_caller_with_another_key(
     side: str, listens: tuple[str, ...], calls: tuple[str, ...], why: str, start: Start
 ) -> None:
