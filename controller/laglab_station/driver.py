@@ -26,13 +26,15 @@ class Driver:
     def __init__(
         self, config: StationConfig, make: MakeController, alarms: Alarms, first: int = 0
     ) -> None:
-        self.first = first
-        """The robot's tick that is the controller's tick 0."""
         self.tick: int | None = None
         """The last one that was answered."""
         self.lost = False
         """Whether the estimate has diverged."""
         self.measurement_delay: int | None = None
+        self.is_unjudged = False
+        """Measurements came, and nobody has looked for warnings since."""
+        self._first = first
+        """The robot's tick that is the controller's tick 0."""
         self._config = config
         self._make = make
         self._alarms = alarms
@@ -43,8 +45,6 @@ class Driver:
         rests = first > 0 and self._controller.kind.predicts
         self._joining = Rest() if rests else None
         self._questions = Questions()
-        self._unjudged = False
-        """Measurements came, and nobody has looked for warnings since."""
 
     @property
     def command_delay(self) -> int:
@@ -62,20 +62,20 @@ class Driver:
 
     def warning(self) -> str | None:
         """The estimator's, of the last measurements; once. Raises PluginFailedError."""
-        unjudged, self._unjudged = self._unjudged, False
+        unjudged, self.is_unjudged = self.is_unjudged, False
         return self._controller.warning(self._control) if unjudged else None
 
     def leave(self) -> None:
         """The robot is another's from now on."""
         self._alarms.handed_over(self._controller, self._control)
 
-    def look_ahead(self) -> None:
-        """Do now, while the robot is busy, what the next answer would wait for."""
+    def look_ahead(self, regular: bool) -> None:
+        """Do now what the next answer would wait for; `regular`: a measurement will likely come."""
         if self.tick is None or self._joining is not None or self._ahead is not None:
             return
         with at_tick(self.tick + 1):
             self._ahead = self._controller.advance(self._control)
-            if self._unjudged and self.measurement_delay is not None:  # as it seems, one a tick
+            if regular and self.measurement_delay is not None:
                 due = self._ahead.flight.tick - self.measurement_delay
                 self._ahead = self._controller.expect(self._ahead, due)
 
@@ -97,18 +97,19 @@ class Driver:
         self.lost = is_far(x.tolist(), self._config.goal)
         if self.lost:
             return False
-        self.leave()
         told = replace(self._config, initial_estimate=x, initial_covariance=P, first_tick=rest.tick)
-        self._controller = self._make(told)
+        controller = self._make(told)
+        self.leave()
+        self._controller = controller
         self._control = self._controller.start()
-        self.first = self.tick = rest.tick
+        self._first = self.tick = rest.tick
         self._joining = None
         return True
 
     def _step(self, tick: int, came: Came, robot: tuple[int, int]) -> list[Message]:
         """On to `tick`; over ticks that were lost on the way the last command is taken to hold, or
         its plan to go on, until the robot tells."""
-        control, first = self._control, self.first
+        control, first = self._control, self._first
         for lost in range(0 if self.tick is None else tick - self.tick):
             control = self._controller.unanswered(control) if lost else control
             control = self._ahead or self._controller.advance(control)
@@ -121,7 +122,7 @@ class Driver:
         self.tick = tick
         asks = self._questions.ask(self._control.flight.told, first, tick, robot)
         alarms = self._alarms.note(self._controller, self._control, tick)
-        self._unjudged = bool(arrived)
+        self.is_unjudged = bool(arrived)
         pose = self._control.pose
         self.lost = pose is not None and self._controller.diverged(pose)
         return [*alarms, *said(tick, self._control, robot, asks)]

@@ -143,9 +143,10 @@ class Station:
 
     def look_ahead(self) -> None:
         """Do now, while the robot is busy, what the next answer would wait for."""
-        if self._outcome is None:
-            self._driver.look_ahead()
+        regular = self._driver.is_unjudged  # a measurement came, so at the next tick one may too
         self._look_back()
+        if self._outcome is None:
+            self._driver.look_ahead(regular)
 
     def end(self, reason: EndReason) -> list[bytes]:
         """End the run from this side: the frames to send."""
@@ -221,8 +222,10 @@ class Station:
         if self._played_out:
             self._played_out.begin_anew()
         if tick or self.tick is not None:
+            self._driver.tick = None  # nor was it ever answered, should nobody drive it
+            driver = Driver(self._config, self._make_controller, self._alarms, tick)
             self._driver.leave()
-            self._driver = Driver(self._config, self._make_controller, self._alarms, tick)
+            self._driver = driver
 
     def _answer_timed(self, tick: int, came: Came) -> None:
         assert self._robot is not None, "nobody was heard yet"

@@ -192,5 +192,6 @@ def _shown(
         auto_refresh=False,
         transient=transient,
         speed_estimate_period=window,
+        redirect_stdout=False,  # what is printed meanwhile goes where it was told to
         disable=not (shown and (console.is_terminal or console.is_jupyter)),
     )

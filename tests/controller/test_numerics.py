@@ -17,7 +17,7 @@ from laglab_control import (
     replay,
 )
 from laglab_control.estimators.kalman import Belief, correct
-from laglab_protocol import Measurement, Sender, Tick, frames_in
+from laglab_protocol import Command, Measurement, Sender, Tick, frames_in
 from laglab_station import Station
 
 ROBOT = RobotModel()
@@ -164,5 +164,7 @@ def test_no_float_makes_a_station_raise(name, measured):
     station, robot = Station(StationConfig(estimator=name)), Sender(1, 1)
     for k, (z, v, omega) in enumerate(measured):
         measurement = Measurement(*z, v, omega, k, k - 1)
-        station.hear(frames_in(robot.frame(measurement) + robot.frame(Tick(k, 1))))
-        assert all(map(math.isfinite, station._control.drive[:2]))
+        said = station.hear(frames_in(robot.frame(measurement) + robot.frame(Tick(k, 1))))
+        for frame in frames_in(b"".join(said)):
+            if isinstance(frame.message, Command):
+                assert all(map(math.isfinite, frame.message.speeds))

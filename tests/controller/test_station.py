@@ -3,7 +3,14 @@
 import numpy as np
 import pytest
 
-from laglab_control import ControlError, PolarLaw, RobotModel, StationConfig
+from laglab_control import (
+    ControlError,
+    Controller,
+    PluginFailedError,
+    PolarLaw,
+    RobotModel,
+    StationConfig,
+)
 from laglab_protocol import (
     NO_COMMAND,
     Command,
@@ -210,6 +217,26 @@ def test_the_time_of_the_law_is_the_robots_whenever_the_station_met_it():
     for _ in range(4):  # it begins again, and so does its time
         robot.tick(0, (0, START))
     assert taken.asked[-1] == 0.03
+
+
+def test_of_a_robot_that_begins_again_and_cannot_be_driven_the_end_is_its_own():
+    made = []
+
+    def once(config):
+        made.append(config)
+        if len(made) > 1:
+            raise PluginFailedError("only once")
+        return Controller(config)
+
+    robot = Robot(Station(StationConfig(estimator="raw"), once))
+    for tick in range(50):
+        robot.tick(tick, (tick, START))
+    for _ in range(3):
+        assert robot.tick(0, (0, START)) == []
+    with pytest.raises(PluginFailedError):
+        robot.tick(0, (0, START))
+    (end,) = frames_in(b"".join(robot.station.end(EndReason.FAILED)))
+    assert end.message == End(0, EndReason.FAILED)
 
 
 @pytest.mark.parametrize("there", [(2000.0, 0.0, 0.0), (np.nan, 0.0, 0.0)])

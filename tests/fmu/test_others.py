@@ -16,8 +16,6 @@ from laglab_fmu.models import MODELS, Model
 
 TS = 0.01
 OTHERS = ("Car2", "Car3", "Omni2", "Omni3")
-STATES, COMMANDS = ("x", "y", "theta"), ("v_command", "omega_command")
-UNKNOWNS = ("v", "omega", "der(x)", "der(y)", "der(theta)")
 Parameters = dict[str, Value]
 
 

@@ -21,21 +21,11 @@ from laglab.scenario import load
 from laglab_gateway import read_trace
 from laglab_protocol import EndReason, read_tlog
 
+from .traces import assert_whole, wait_for_rows
+
 Start = Callable[..., "subprocess.Popen[str]"]
 ListeningPort = Callable[["subprocess.Popen[str]"], str]
 NOTICED_WITHIN = 5.0
-
-
-def wait_for_rows(trace: Path, rows: int) -> None:
-    while not trace.exists() or trace.read_bytes().count(b"\n") <= rows:
-        time.sleep(0.02)
-
-
-def assert_whole(trace: Path) -> None:
-    text = trace.read_text()
-    assert text.endswith("\n")
-    columns = read_trace(trace)
-    assert columns["tick"].tolist() == list(range(len(columns["tick"])))
 
 
 def said_in_time(process: "subprocess.Popen[str]", words: str) -> str:

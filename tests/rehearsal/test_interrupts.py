@@ -15,7 +15,8 @@ from pathlib import Path
 import pytest
 
 from laglab.scenario import load
-from laglab_gateway import read_trace
+
+from .traces import assert_whole, wait_for_rows
 
 Start = Callable[..., "subprocess.Popen[str]"]
 LONG = ("lab", "--duration", "3600")
@@ -139,11 +140,6 @@ def test_what_we_were_started_to_ignore_stays_ignored(ignored: str, tmp_path: Pa
     assert errors.splitlines()[-1] == "laglab: interrupted"
 
 
-def wait_for_rows(trace: Path, rows: int = 50) -> None:
-    while not trace.exists() or trace.read_bytes().count(b"\n") <= rows:
-        time.sleep(0.02)
-
-
 @pytest.mark.parametrize("transport", ["inline", "udp"])
 def test_a_run_without_end_lasts_until_ctrl_c_and_its_results_are_written(
     start: Start, tmp_path: Path, transport: str
@@ -155,8 +151,7 @@ def test_a_run_without_end_lasts_until_ctrl_c_and_its_results_are_written(
     _, errors = run.communicate(timeout=20)
     assert run.returncode == 130
     assert "Traceback" not in errors
-    columns = read_trace(tmp_path / "run" / "trace.csv")
-    assert columns["tick"].tolist() == list(range(len(columns["tick"])))
+    assert_whole(tmp_path / "run" / "trace.csv")
     summary = json.loads((tmp_path / "run" / "summary.json").read_text())
     assert summary["verdict"].startswith("interrupted at tick")
     assert load(str(tmp_path / "run" / "scenario.toml")).last_tick is None

@@ -9,7 +9,7 @@ import pytest
 import laglab
 from laglab.results.numbers import has_converged
 from laglab.runs.inline import InlineLink
-from laglab.scenario import load
+from laglab.scenario import both_ways, load
 from laglab.studies.many import run_many, schedule_of, why_one_by_one
 
 from .many_kept import furthest, kept
@@ -17,17 +17,12 @@ from .many_kept import furthest, kept
 SHARP = 1e-9
 
 
-def both(**impairments):
-    """The same in both directions."""
-    ways = ("link.command", "link.measurement")
-    return {f"{way}.{key}": value for way in ways for key, value in impairments.items()}
-
-
+JITTER = {"distribution": "exponential", "mean": 0.01}
 LINKS = {
-    "losses and jitter": both(loss=0.05, extra_delay={"distribution": "exponential", "mean": 0.01}),
-    "much jitter": both(extra_delay={"distribution": "exponential", "mean": 0.05}),
-    "bursts": both(burst={"good_to_bad": 0.05, "bad_to_good": 0.2}),
-    "reordered and twice": both(reorder=0.2, duplicate=0.1),
+    "losses and jitter": both_ways(loss=0.05, extra_delay=JITTER),
+    "much jitter": both_ways(extra_delay={"distribution": "exponential", "mean": 0.05}),
+    "bursts": both_ways(burst={"good_to_bad": 0.05, "bad_to_good": 0.2}),
+    "reordered and twice": both_ways(reorder=0.2, duplicate=0.1),
     "an outage": {"link.event": [{"at": 0.8, "duration": 1.2, "link": {"loss": 1.0}}]},
     "commands lost for a while": {
         "link.event": [
@@ -35,7 +30,7 @@ LINKS = {
         ]
     },
     "without delay": {
-        **both(loss=0.1, extra_delay={"distribution": "exponential", "mean": 0.01}),
+        **both_ways(loss=0.1, extra_delay=JITTER),
         "link.command_delay": 0,
         "link.measurement_delay": 0,
     },

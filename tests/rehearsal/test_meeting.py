@@ -168,11 +168,6 @@ def test_a_robot_that_begins_again_is_met_anew(
     ended(station, 0)
 
 
-def has_answered(folder: Path) -> bool:
-    log = folder / "robot.tlog"
-    return log.exists() and log.stat().st_size > 2000
-
-
 @pytest.mark.slow
 def test_a_displaced_station_is_told_and_can_come_back(
     start: Start, listening_port: ListeningPort, tmp_path: Path

@@ -35,7 +35,10 @@ WRONG = [
     (["run", "fig6", "--duration", "0"], "duration"),
     (["run", "fig6", "--duration", "0.001"], "duration"),
     (["run", "fig6", "--fmi", "4"], "fmi"),
-    (["run", "fig6", "--fmi", "2", "--set", "plant.kind=mine:R"], "--fmi: mine:R is as it was"),
+    (
+        ["run", "fig6", "--fmi", "2", "--set", "plant.kind=mine:R"],
+        "plant.fmi (--fmi): mine:R is as it",
+    ),
     (["run", "fig6", "--seed", "-1"], "seed"),
     (["run", "fig6", "--transport", "pigeon"], "'--transport'"),
     (["run", "fig6", "--colour", "red"], "--colour"),

@@ -48,7 +48,9 @@ def c_files(model: Model = ROBOT) -> dict[str, bytes]:
     """The C sources of both versions by name, the generated header included."""
     src = own_files("src")
     folders = src, src / "faces", src / "robots" / model.folder
-    files = {path.name: path.read_bytes() for each in folders for path in each.glob("*.[ch]")}
+    files = {
+        path.name: path.read_bytes() for each in folders for path in sorted(each.glob("*.[ch]"))
+    }
     tokens = dict(zip(("TOKEN_2", "TOKEN_3", "TOKEN_FLEET"), map(token, model.fmus), strict=False))
     tokens.setdefault("TOKEN_FLEET", f"{{no fleet of {model.name}}}")
     return files | {"variables.h": variables_header(model.variables, tokens).encode()}

@@ -103,6 +103,10 @@ class UdpIn(_Udp):
                 where = f"{address[0]}:{address[1]}"
                 raise _cannot(f"send to {where} from", self.name, error) from error
 
+    def receive(self, timeout: float) -> bytes:
+        self._next_look = 0.0  # what is there already is not to be waited for
+        return super().receive(timeout)
+
     def _read(self) -> bytes | None:
         if self._apart is not None:
             data = self._read_from(self._apart, LARGEST_DATAGRAM)

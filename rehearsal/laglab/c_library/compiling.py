@@ -13,7 +13,7 @@ from laglab_fmu.compiler import compile_library, host_platform
 
 def new_folder(stack: ExitStack) -> Path:
     """An empty one, gone when the stack is closed."""
-    return Path(stack.enter_context(TemporaryDirectory(prefix="laglab-bench-")))
+    return Path(stack.enter_context(TemporaryDirectory(prefix="laglab-c-")))
 
 
 def c_library(

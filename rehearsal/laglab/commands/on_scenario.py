@@ -130,7 +130,9 @@ def on_scenario(
         overrides = _overrides(options)
         loaded = load(scenario, overrides, say)
         if "plant.fmi" in overrides and not loaded.plant.ships:
-            raise ScenarioError(f"--fmi: {loaded.plant.called} is as it was brought: leave it out")
+            raise ScenarioError(
+                f"plant.fmi (--fmi): {loaded.plant.called} is as it was brought: leave it out"
+            )
         command(loaded, **options)
 
     keyword = inspect.Parameter.KEYWORD_ONLY

@@ -70,11 +70,11 @@ def pose_difference(poses: Array, others: Array) -> Array:
     return difference
 
 
-def mean_of_known(values: Array, axis: int = 0) -> Array:
-    """Along one axis; NaN where there is no value."""
+def mean_of_known(values: Array) -> Array:
+    """Along the first axis; NaN where there is no value."""
     there = ~np.isnan(values)
     with np.errstate(invalid="ignore", over="ignore"):
-        mean: Array = np.where(there, values, 0).sum(axis=axis) / there.sum(axis=axis)
+        mean: Array = np.where(there, values, 0).sum(axis=0) / there.sum(axis=0)
     return mean
 
 

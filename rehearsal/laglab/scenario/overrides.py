@@ -13,7 +13,7 @@ Overrides = Mapping[str, object]
 
 def both_ways(**impairments: object) -> Overrides:
     """The same in both directions of the link, and nothing else there."""
-    return {"link.command": impairments, "link.measurement": impairments}
+    return {"link.command": dict(impairments), "link.measurement": dict(impairments)}
 
 
 def assignment(text: str) -> tuple[str, object]:

@@ -95,7 +95,8 @@ class Judge:
         if claimed is not None:
             values = nees_by_triangle(error, claimed[:, late])
             missing = np.isnan(values)
-            self._nees += np.where(missing, 0.0, values).sum(axis=1)
+            with np.errstate(over="ignore"):
+                self._nees += np.where(missing, 0.0, values).sum(axis=1)
             self._claims += (~missing).sum(axis=1)
 
     def judgements(self, diverged: Array) -> Judgements:

@@ -132,8 +132,12 @@ def _given_up(asked: _Asked, how: str) -> bool:
 
 def work(call: Call, tell: Tell) -> None:
     """In the worker: one job."""
+    answer_all(tell, _done(call))
+
+
+def _done(call: Call) -> "Iterator[object]":
     function, job = pickle.loads(call.pickled)
-    answer_all(tell, map(function, [job]))
+    yield function(job)
 
 
 def as_done(
@@ -167,7 +171,7 @@ def shared_out(
     `function` stands at the top of a module; of `workers` 0 is one a core. Raises RunError, when a
     job fails, or kills whoever does it.
     """
-    workers = min(workers or cores(), len(jobs))
+    workers = max(1, min(workers or cores(), len(jobs)))
     with Processes(workers) as processes:
         for _, future in as_done(processes, function, jobs, ahead=2 * workers):
             yield future.result()

@@ -53,6 +53,15 @@ def test_a_stranger_does_not_take_the_link(stack: ExitStack) -> None:
     assert stranger.receive(0.02) == b""
 
 
+def test_what_came_before_the_peer_was_accepted_is_there_at_once(stack: ExitStack) -> None:
+    robot, station = udp_pair(stack)
+    for number in range(20):
+        station.send(b"%d" % number)
+    robot.receive(WAIT)
+    robot.accept_peer()
+    assert [robot.receive(0.0) for _ in range(20)] == [*(b"%d" % k for k in range(1, 20)), b""]
+
+
 def test_a_later_accepted_peer_replaces_the_first(stack: ExitStack) -> None:
     robot, station = udp_pair(stack)
     again = stack.enter_context(open_endpoint(station.name))

@@ -40,7 +40,7 @@ def soak(
 
     def tell(lines: list[str]) -> None:
         for line in lines:
-            print(line)
+            print(line, flush=True)
 
     command = f"laglab soak --minutes {minutes:g} --seed {seed}"
     own = out if turn is None else out / f"again-{turn}"  # the soak's report stays

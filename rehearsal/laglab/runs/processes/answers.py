@@ -50,6 +50,8 @@ def _next(inbox: Inbox, patience: float) -> Any:
             raise GaveUpError(reason)
         case Ended(how):
             raise NoAnswerError(how)
+        case _:
+            raise NoAnswerError("it said what is no answer")
 
 
 def answer_all(tell: Tell, answers: Iterable[object]) -> None:
