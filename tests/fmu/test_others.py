@@ -15,6 +15,7 @@ from laglab_fmu.foreign import FmuFile, ForeignRobot, Value, Wiring
 from laglab_fmu.models import MODELS, Model
 
 TS = 0.01
+STATES = ("x", "y", "theta")
 OTHERS = ("Car2", "Car3", "Omni2", "Omni3")
 Parameters = dict[str, Value]
 

@@ -37,7 +37,7 @@ WRONG = [
     (["run", "fig6", "--fmi", "4"], "fmi"),
     (
         ["run", "fig6", "--fmi", "2", "--set", "plant.kind=mine:R"],
-        "plant.fmi (--fmi): mine:R is as it",
+        "plant.fmi: mine:R is as it was",
     ),
     (["run", "fig6", "--seed", "-1"], "seed"),
     (["run", "fig6", "--transport", "pigeon"], "'--transport'"),

@@ -130,9 +130,8 @@ def on_scenario(
         overrides = _overrides(options)
         loaded = load(scenario, overrides, say)
         if "plant.fmi" in overrides and not loaded.plant.ships:
-            raise ScenarioError(
-                f"plant.fmi (--fmi): {loaded.plant.called} is as it was brought: leave it out"
-            )
+            called = loaded.plant.called
+            raise ScenarioError(f"plant.fmi: {called} is as it was brought: leave --fmi out")
         command(loaded, **options)
 
     keyword = inspect.Parameter.KEYWORD_ONLY
