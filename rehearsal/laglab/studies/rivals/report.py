@@ -102,4 +102,5 @@ def draw_rivals(
         return score.share, "" if np.isnan(score.settled) else f"{score.settled:.1f} s"
 
     headings = {strategy: strategy.replace("-", "-\n") for strategy in strategies}
-    return draw_shares(title, links, headings, share, width)
+    said = f"{title}: share that settled, and when in the median"
+    return draw_shares(said, links, headings, share, width)
