@@ -26,8 +26,8 @@ class PlantSilentError(GatewayError):
     def __init__(self, link: str, tick: int | None, seconds: float) -> None:
         since = "never spoke" if tick is None else f"has been silent since its tick {tick}"
         super().__init__(
-            f"{link}: the robot {since} ({seconds:.1f} s): is it switched on, on this link, and "
-            "speaks it the laglab dialect at this baud, signed with the key of --plant-key, or not?"
+            f"{link}: the robot {since} ({seconds:.1f} s): is it switched on, and on this link; "
+            "does it speak the laglab dialect at this baud, signed as --plant-key says?"
         )
 
 

@@ -27,11 +27,11 @@ from laglab_protocol.messages.loop import Tick
 from laglab_protocol.plans import Planned
 
 NEVER = 10**6
-"""[ticks] What is planned for so much later does not come into force here."""
+"""[ticks] What is planned for so much later never comes into force."""
 
 
 class LockstepSession(RobotSession):
-    """Its station. The reaction to the command for its tick is its next tick."""
+    """The robot's station. The reaction to the command for a tick is the next tick."""
 
     longest_delay = 64
 
@@ -54,7 +54,7 @@ class LockstepSession(RobotSession):
 
 
 def _repeats(session: LockstepSession) -> str | None:
-    """Two more of the same, while nobody answers; each whole."""
+    """Two more of the same tick, while nobody answers."""
     for _ in range(2):
         came = session.wait_for(Tick, session.waits.react)
         if came is None:
@@ -62,7 +62,7 @@ def _repeats(session: LockstepSession) -> str | None:
         if came.tick != session.tick:
             return (
                 f"tick {came.tick} came, though nobody answered {session.tick}; "
-                "has it a clock of its own (--pace realtime)?"
+                "does it have a clock of its own (--pace realtime)?"
             )
     return None
 

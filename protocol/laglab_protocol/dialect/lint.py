@@ -160,7 +160,7 @@ def _entry(entry: Element, where: str, enum: str) -> Iterator[Finding]:
     if not _UPPER.fullmatch(_name(entry)):
         yield Finding(where, "entry name: use upper-case letters, digits and _")
     if not _name(entry).startswith(f"{enum}_"):
-        yield Finding(where, f"entry name: begin it with {enum}_, for C has one room for all")
+        yield Finding(where, f"entry name: begin it with {enum}_, for C has one namespace")
     if _number(entry.get("value")) is None:
         yield Finding(where, f"value {entry.get('value')!r}: write a plain number")
     if not _described(entry):
