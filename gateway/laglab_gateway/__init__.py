@@ -1,4 +1,4 @@
-"""The robot's side of the link: a plant behind two delayed channels, paced by station or clock."""
+"""The robot's side of the link: a plant, or a real robot, behind two channels that delay."""
 
 from laglab_gateway.config import GatewayConfig
 from laglab_gateway.core import Gateway

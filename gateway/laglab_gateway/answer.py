@@ -14,7 +14,7 @@ class Said(NamedTuple):
 
 
 class Answer:
-    """To the tick that the robot is at; of those before it what comes late."""
+    """Gathers the answer to the robot's tick, and takes late commands for earlier ticks."""
 
     def __init__(self) -> None:
         self.through = -1
@@ -28,8 +28,8 @@ class Answer:
         self._beside: deque[Recall | Plan] = deque(maxlen=UNANNOUNCED)
 
     def take(self, message: Estimate | Recall | Plan | Command, tick: int) -> Said | None:
-        """What goes on the link with it at `tick`: a command that is answer to this tick and whole,
-        or to one before, however late it comes."""
+        """What goes on the link at `tick` now that `message` has come: a whole command for this
+        tick, or one for an earlier tick, however late; None when there is none."""
         match message:
             case Recall() | Plan():
                 self._beside.append(message)
@@ -43,12 +43,12 @@ class Answer:
                 self._beside.clear()
             case Command() if self.through < message.tick < tick:
                 return self._said(message)
-            case Command():  # said again, or of a tick that has not come, as was asked before it
+            case Command():  # said again, or for a later tick: what came before it is void too
                 self._beside.clear()
         return None
 
     def _is_whole(self, command: Command) -> bool:
-        """Whether all is here that was said before it."""
+        """Whether all that was said before `command` is here."""
         plans = sum(isinstance(each, Plan) for each in self._beside)
         said = len(self.estimates) + len(self._beside) - plans
         return said >= command.estimates and plans >= frames_of(command)

@@ -40,7 +40,7 @@ class Gateway(RobotSide):
 
     @property
     def immediate(self) -> bool:
-        """Whether the command of a tick takes force at that tick."""
+        """Whether the command of a tick comes into force at that tick."""
         return self._config.command_delay == 0
 
     def _begin_tick(self) -> None:
@@ -67,7 +67,7 @@ class Gateway(RobotSide):
         return Measurement(x, y, theta, *self._speeds, self.tick, self._drive.command_tick)
 
     def settle(self) -> None:
-        """Let the commands that have come across the link take force, and the failsafe watch.
+        """Let the commands that have crossed the link come into force, and the failsafe watch.
 
         Then the plant is on its way to k + 1, unless the run ends at k.
         """

@@ -1,4 +1,4 @@
-"""Which command the robot follows: a state machine without clock, one state a tick.
+"""Which command the robot follows: a state machine without a clock, one state a tick.
 
     WAITING    no command yet: the robot stands still
     DRIVING    the newest command is in force, or what it plans for this tick
@@ -43,7 +43,7 @@ WHY_STOPPING = {
     Rejection.NOT_FINITE: "commands are not finite: stopping",
     Rejection.OUT_OF_LIMITS: "commands are beyond V_MAX, OMEGA_MAX: stopping",
 }
-"""What to say of a robot that stops although commands come, in at most 50 characters."""
+"""What to say when a robot stops although commands come, in at most 50 characters."""
 
 
 @checked
@@ -102,7 +102,7 @@ def follow(command: Command, tick: int) -> Drive:
 
 
 def follow_plan(planned: Planned, tick: int) -> Drive:
-    """The same with a plan: at each tick what it has for it, also for `tick`."""
+    """The same with a plan: each tick, `tick` included, gets what the plan has for it."""
     command, first, following = planned
     if first is None or not following:
         return follow(command, tick)

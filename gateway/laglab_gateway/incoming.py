@@ -22,13 +22,13 @@ class Came(NamedTuple):
     late: list[Planned]
     """Too late for play-out."""
     incomplete: list[Command]
-    """Of which a part of the plan never came."""
+    """Commands with a plan of which a part never came."""
     recalls: list[Recall]
 
 
 class Incoming:
-    """The channel, the parts of plans put together, and play-out. Ticks are those of the stamps;
-    the channel's are counted from the run's `first`."""
+    """The channel, plans put together from their parts, and play-out. Ticks are the robot's, as in
+    stamps; `elapsed` and the channel's ticks are counted from the run's `first`."""
 
     def __init__(self, channel: Channel[Command | Plan | Recall], playout: int) -> None:
         self.first = 0
@@ -39,7 +39,7 @@ class Incoming:
         """Meant for later than when they came."""
 
     def push(self, elapsed: int, command: Command, beside: Iterable[Recall | Plan]) -> None:
-        """Put a command on the link, with all that goes with it; the plan of another does not."""
+        """Put a command on the link with what goes with it, but not with another command's plan."""
         playout = self._playout
         until = command.tick - self.first + playout.bound if playout else math.inf
         self._channel.push(elapsed, command, until)
@@ -88,7 +88,7 @@ class Incoming:
             self._playout.clear()
 
     def take_log(self) -> list[LinkRow]:
-        """The channel's."""
+        """What the link did to every frame since the last call."""
         return self._channel.take_log()
 
 

@@ -11,7 +11,7 @@ KEPT = 1024
 """Ticks; a station that heard nothing for longer meets the robot anew."""
 
 APPLIED_A_TICK = 5
-"""So many LAGLAB_APPLIED go with a tick's measurements: a datagram stays in one piece."""
+"""So many LAGLAB_APPLIED at most go with a tick, so that its datagram stays in one piece."""
 MOST_OWED = KEPT // RECALLED + 1
 
 UNKNOWN = (math.nan, math.nan)
@@ -30,7 +30,7 @@ class SpeedMemory:
             self._speeds.popitem(last=False)
 
     def learn(self, told: Applied) -> None:
-        """What a robot of its own memory says."""
+        """Keep what a robot with a memory of its own tells."""
         known = zip(told.v, told.omega, range(told.first, told.first + told.count), strict=False)
         for v, omega, tick in known:
             if math.isfinite(v) and math.isfinite(omega):
@@ -64,7 +64,7 @@ class Owed:
         """By first tick, in the order in which they will be told."""
 
     def owe(self, answers: Iterable[Applied]) -> None:
-        """Some more; asked for again they are told again, but not twice meanwhile."""
+        """Some more answers; one that already waits is not told twice."""
         for answer in answers:
             if len(self._answers) < MOST_OWED:
                 self._answers.setdefault(answer.first, answer)

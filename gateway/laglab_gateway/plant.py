@@ -27,4 +27,4 @@ class Plant(Protocol):
         """Drive one tick at ``v`` [m/s] and ``omega`` [rad/s]."""
 
     def place(self, x: float, y: float, theta: float) -> None:
-        """Put it at a pose [m, m, rad], at rest; NaN stands for the start pose's."""
+        """Put it at a pose [m, m, rad], at rest; NaN stands for the start pose's coordinate."""

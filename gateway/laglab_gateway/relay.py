@@ -97,8 +97,8 @@ class Relay(RobotSide):
 
     @property
     def told_robot(self) -> Settings:
-        """Our settings less the delays, which are the link's, behind which the robot is; it has no
-        play-out but ours."""
+        """Our settings without delays and play-out: those are the link's and ours, and the robot is
+        beyond them."""
         return replace(
             self.settings,
             command_delay=UNKNOWN_DELAY,
@@ -154,7 +154,7 @@ class Relay(RobotSide):
         return self._tell(samples)
 
     def _meet_anew(self, tick: int) -> None:
-        """What was on its way to the robot, or from it, was meant for the one before."""
+        """What was on its way to the robot, or from it, belongs to its earlier ticks."""
         self.announce(f"the robot has begun again at its tick {tick}")
         self.first, self._in_force = tick - (self.elapsed + 1), tick - 1
         self._answer.through = tick - 1
@@ -217,8 +217,8 @@ class Relay(RobotSide):
             self._asks.append(asked)
 
     def _allowed(self, planned: Planned) -> list[Message]:
-        """For the robot, with its stamp, and with what it is asked instead of the estimate; its
-        plan goes with it, and the robot reads it off."""
+        """For the robot: the command with its stamp, after its plan, which the robot reads off by
+        itself, and after what the robot is asked, which takes the estimate's place."""
         command = planned.command
         if not self.services.arming.armed:
             planned = Planned(replace(command, v=0.0, omega=0.0, plan=0))

@@ -89,18 +89,18 @@ class RobotSide(ABC):
         self._owed = Owed()
         self._drive = Drive()
         self._rejected: Rejection | None = None
-        """Why nothing was followed since the last command that was."""
+        """Why no command was followed since the last one that was."""
         self._go_to(0)
 
     def _go_to(self, tick: int) -> None:
-        """Nothing was said yet at this tick."""
+        """At this tick nothing was said yet."""
         self.tick = tick
         self._batch: list[Message] = []
         self._answer.begin()
 
     @property
     def elapsed(self) -> int:
-        """Ticks since the run's first: by these the link delays and its timeline goes."""
+        """Ticks since the run's first: the link's delays and its timeline go by them."""
         return self.tick - self.first
 
     @property
@@ -171,7 +171,7 @@ class RobotSide(ABC):
         return True
 
     def _take_end(self, end: End) -> None:
-        """Of a run that is past, or that has not come this far, it ends nothing."""
+        """An END of a past run, or of a tick that has not come, ends nothing."""
         begun = bool(self._batch)
         if self.outcome or (begun and self._answer.through <= end.tick <= self.tick):
             self.station_end = end
@@ -289,7 +289,7 @@ class RobotSide(ABC):
         return self._sender.frame(End(self.tick, reason))
 
     def farewell(self, reason: EndReason) -> list[bytes]:
-        """The same, after what the station must know of the run, if it missed it."""
+        """The frame of `end`, after what the station must know of the run and may have missed."""
         stops = self.audit.emergency_stops
         last = [Statustext(MAV_SEVERITY_EMERGENCY, EMERGENCY_STOP.encode())] if stops else []
         return [*self.framed(last), self.end(reason)]

@@ -27,8 +27,9 @@ class Channel(Generic[M]):
     """Holds each message back for exactly `delay` ticks; an impaired one for longer, or for ever.
 
     Everything happens on the grid of ticks: what would come out between two of them comes out at
-    the later one. `fates` None is the ideal link. `frame` makes the bytes that an impaired link may
-    queue and corrupt; by default they are a frame of the message.
+    the later one. `sample_time` is in s. `fates` None is the ideal link. `frame` makes the bytes
+    that an impaired link may queue and corrupt; by default they are a frame of the message. Raises
+    ValueError for a negative delay.
     """
 
     def __init__(

@@ -11,7 +11,8 @@ from laglab_gateway.link.timeline import Direction
 
 
 class LinkRow(NamedTuple):
-    """One copy of one frame: the tick it entered at, its number in that tick, what became of it."""
+    """One copy of one frame: the tick it entered at, its number in that tick, the copy's number,
+    its size [bytes], what became of it, and how much later than the fixed delay [s]."""
 
     direction: str
     tick: int
@@ -33,8 +34,8 @@ class RecordedFates:
     """
 
     def __init__(self, rows: Sequence[LinkRow], ticks: range | None = None) -> None:
-        """`ticks` are those that the record tells of; by default from the first row's on to the
-        last one's."""
+        """`ticks` are those that the record tells of, by default from the first row's to the last
+        one's."""
         self._ticks = recorded_ticks(rows) if ticks is None else ticks
         self._fates: dict[int, dict[int, list[tuple[FateKind, float]]]] = {}
         for row in rows:
@@ -67,7 +68,7 @@ def recorded_ticks(*directions: Sequence[LinkRow]) -> range:
 
 
 def _done(fate: str) -> FateKind:
-    """By the link: who was late for play-out was delivered."""
+    """What the link did: it delivered a frame that was too late for play-out."""
     kind = FateKind(fate)
     return FateKind.DELIVERED if kind is FateKind.LATE else kind
 

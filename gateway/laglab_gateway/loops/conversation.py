@@ -26,13 +26,13 @@ from laglab_protocol import (
 )
 
 TIMESYNC_TICKS = 10
-"""How often the station's clock is asked for."""
+"""Ticks between two questions for the station's clock."""
 
 END_TRIES = 5
 """A lost END only costs the station its silence timeout, so a few tries are enough."""
 
 KNOCK_PERIOD = 0.5
-"""[s]"""
+"""[s] Between heartbeats to a station that has not been heard."""
 
 TAKEN_OVER = "another station has taken over"
 
@@ -128,7 +128,7 @@ class Conversation:
             self._look_around()
 
     def _of_the_station_in_force(self, frames: list[Frame]) -> list[Frame]:
-        """All of them if there is no other station; without a station's if another is in force."""
+        """All of them; while another station is in force, only those that are no station's."""
         link, now = self._link, self.now()
         if link.peer is not None and link.sender != link.peer:
             if now - self._heard < self._patience.in_force:
@@ -160,7 +160,7 @@ class Conversation:
         except SettingsError as error:
             if not self._begun:
                 raise
-            self._warn(str(error))  # it came later, and will find out by itself
+            self._warn(str(error))  # the station came late, and will find out by itself
         if said := differences(self._gateway.settings, self._settings):
             self._warn(f"the two sides were told different things: {said}")
 

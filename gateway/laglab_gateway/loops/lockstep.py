@@ -36,6 +36,6 @@ def _await_answer(gateway: Gateway, conversation: Conversation) -> None:
     """Send this tick again until it is answered; the station answers a repeat with the same."""
     while not conversation.listen_for(lambda: gateway.answered):
         if gateway.station_end is not None:
-            return  # it has ended the run, and will not answer any more
+            return  # the station has ended the run, and will not answer any more
         conversation.check_silence()
         conversation.send(gateway.repeat_tick())

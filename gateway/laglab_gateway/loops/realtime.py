@@ -49,8 +49,8 @@ def serve_realtime(gateway: Gateway, around: Surroundings, period: float) -> Ser
 
 
 def _listen_until(deadline: float, gateway: Gateway, conversation: Conversation) -> float | None:
-    """Take what arrives before the deadline, and what has arrived when that is over already; when
-    this tick's answer came, if it did."""
+    """Take what arrives before the deadline, and, where that is past, what is there already.
+    Returns when this tick's answer came; None when it did not."""
     answered = None
     left = deadline - conversation.now()
     while True:

@@ -90,8 +90,8 @@ class RobotLine:
         return self._refusals.news([self._listener], monotonic())
 
     def compare_settings(self) -> str:
-        """What the robot was told differently. Raises SettingsError when it ticks at another
-        pace."""
+        """What the robot was told differently, or that it does not tell; empty when all is well.
+        Raises SettingsError when it ticks at another pace."""
         robot = self._relay.robot_settings
         if robot is None:
             return "the robot does not tell its settings: nothing to compare with ours"

@@ -14,7 +14,7 @@ from laglab_protocol import Listener
 
 
 def unheard(_: object) -> None:
-    """Nobody asked."""
+    """For what nobody asked to be told."""
 
 
 @dataclass(frozen=True)

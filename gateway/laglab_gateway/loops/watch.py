@@ -19,16 +19,16 @@ from laglab_protocol import (
 )
 
 POLL_US = 5_000
-"""How often they are looked after; in between the loop is not held up for them."""
+"""[us] Between two looks at the watchers; in between they do not hold up the loop."""
 
 HEARD_A_SECOND, HEARD_AT_ONCE = 32768, 2048
-"""Bytes of what is said on one link that are looked at; what comes beyond has to wait."""
+"""Bytes that are read from one link; what comes beyond has to wait."""
 
 
 class Watcher:
     """One link, and who makes the frames on it. Of several who watch there, each is served apart.
 
-    Where others have a key and `trusting` is False, who signs nothing may see, arm and stop.
+    Unless it is `trusting`, who signs nothing may only see, arm and stop.
     """
 
     def __init__(self, listener: Listener, sender: Sender, trusting: bool = True) -> None:
@@ -116,7 +116,7 @@ class Watch:
         address = watcher.listener.link.sender
         asker = watcher.askers.heard_from(address, now)
         if address is not None:
-            watcher.askers.forget(None)  # there is not one far end, but whoever speaks
+            watcher.askers.forget(None)  # no longer one far end, but everybody who speaks
         for frame in frames:
             replies = self._services.answer(frame, state, asker, watcher.trusts(frame))
             self._say(watcher, address, asker, replies)
@@ -129,7 +129,7 @@ class Watch:
 
     @contextmanager
     def _letting_go(self, watcher: Watcher, address: Address | None = None) -> Iterator[None]:
-        """A link that breaks; of many on one link, the one whom nothing reaches."""
+        """Let go a link that breaks; of many on one link, only the one whom nothing reaches."""
         try:
             yield
         except EndpointError:

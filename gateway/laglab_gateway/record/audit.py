@@ -10,7 +10,7 @@ from laglab_gateway.drive import Rejection
 from laglab_gateway.link.fates import FateKind
 
 STOPS_KEPT = 100
-"""The first of them; how many there were is counted."""
+"""Ticks of stops that are kept, the first ones; all stops are counted."""
 
 
 class DelayReport(Struct, frozen=True):
@@ -53,11 +53,11 @@ class LinkReport(Struct, frozen=True):
     failsafe_stops: list[int]
     """Ticks at which the failsafe began to stop the robot; of many, the first."""
     stops: int
-    """How many there were."""
+    """How many failsafe stops there were."""
     timesync: ClockReport | None = None
     emergency_stops: int = 0
     emergency_ticks: list[int] = []
-    """Ticks at which somebody stopped the robot for good; of many, the first."""
+    """Ticks at which somebody asked for an emergency stop; of many, the first."""
 
 
 @dataclass

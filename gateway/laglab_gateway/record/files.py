@@ -44,7 +44,7 @@ class _File(Generic[R]):
             self._write(b"".join(map(self._encode, waiting)))
 
     def give_up(self) -> None:
-        """From now on what is to be written is dropped."""
+        """From now on drop what is to be written."""
         self._file.close()
 
     def _write(self, data: bytes) -> None:
@@ -73,7 +73,7 @@ ROWS: dict[str, type[Row]] = {
     CLAIMS_FILE: ClaimRow,
     TIMING_FILE: TimingRow,
 }
-"""Of the files that are there when there was something to say."""
+"""The rows of the files that are only made when there is something to say."""
 
 
 def _csv(path: Path, fields: tuple[str, ...]) -> _File[Row]:
@@ -85,9 +85,9 @@ class FileRecorder(Recorder):
     """Writes `trace.csv` and `robot.tlog` into a directory; `link.csv`, `arrivals.csv`,
     `claims.csv` and `timing.csv` if there is something to say.
 
-    Kept until `flush`, then all of a file's records go there in one unbuffered write: a process
-    killed at any moment leaves whole rows and whole records, up to the last flush. Once one of the
-    files cannot be written nothing more is recorded.
+    Records are kept until `flush`; then all of a file's go there in one unbuffered write: a process
+    killed at any moment leaves whole rows and records, up to the last flush. Once one of the files
+    cannot be written, nothing more is recorded.
     """
 
     def __init__(self, directory: Path) -> None:

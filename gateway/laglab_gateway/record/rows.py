@@ -5,11 +5,11 @@ from typing import NamedTuple
 from laglab_protocol import Estimate
 
 FOLLOWED = "no"
-"""`ArrivalRow.refused` of what was not."""
+"""`ArrivalRow.refused` of what was not refused."""
 
 
 class TimingRow(NamedTuple):
-    """When a tick began after its deadline [s], and when its answer came after that [s]."""
+    """How long after its deadline a tick began [s], and how long after that its answer came [s]."""
 
     tick: int
     lateness: float
@@ -20,8 +20,8 @@ class ArrivalRow(NamedTuple):
     """A message that came out of the link: its stamp, the tick at which it came, that tick's time
     since the run's first [s]; and why the robot refused it, if it did.
 
-    Of a command the tick at which it came into force, or would have; of a real robot's, and as a
-    station alone sees it, that is what its measurements tell.
+    `arrived` of a command is the tick at which it came into force, or would have; of a real robot,
+    or as a station alone sees it, the tick that measurements tell.
     """
 
     direction: str
@@ -62,12 +62,12 @@ class Notes:
     def came(
         self, direction: str, stamp: int, tick: int, elapsed: int, refused: str = FOLLOWED
     ) -> None:
-        """What is stamped so came out of the link at `tick`, so many after the run's first."""
+        """What bears this stamp came out of the link at `tick`, `elapsed` ticks into the run."""
         time = elapsed * self._sample_time
         self._arrivals.append(ArrivalRow(direction, stamp, tick, time, refused))
 
     def said(self, estimate: Estimate, elapsed: int) -> None:
-        """The station said so of a tick, so many after the run's first."""
+        """The station said this of its estimate, `elapsed` ticks into the run."""
         self._claims.append(claimed(estimate, elapsed * self._sample_time))
 
     def take_arrivals(self) -> list[ArrivalRow]:

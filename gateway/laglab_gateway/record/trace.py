@@ -13,8 +13,9 @@ from laglab_gateway.errors import TraceError
 
 
 class TraceRow(NamedTuple):
-    """Tick k: pose (None of a real robot), sample z_k, estimate of k (None without a filter), u_k
-    as sent (None when it had not come by the end of the tick), u in force.
+    """Tick k: time [s], pose (None of a real robot), sample z_k and estimate of k (None without a
+    filter) [m, m, rad], u_k as sent (None when it had not come by the end of the tick) and u in
+    force [m/s, rad/s].
 
     Of a real robot, sample and u in force are what it reports, None when it does not.
     """
@@ -59,7 +60,7 @@ def read_trace(path: Path) -> Trace:
 
 
 def trace_pieces(path: Path, rows: int = 5_000) -> Iterator[Trace]:
-    """A trace of any length, so many rows at a time; a last row that was cut short is left out.
+    """A trace of any length, `rows` at a time; a last row that was cut short is left out.
 
     Raises: TraceError, as `read_trace`.
     """

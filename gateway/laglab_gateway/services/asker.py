@@ -28,7 +28,7 @@ CHANGES = (CommandLong, CommandInt, ParamSet)
 
 
 class Asker:
-    """One of them: how much more it may be told now, and how often what it watches is sent."""
+    """One who speaks: how much more it may be told now, and how often what it watches is sent."""
 
     def __init__(self, ration: Ration | None = None, pace: Pace | None = None) -> None:
         """Without a ration it may be told everything; those who are sent telemetry have a pace."""

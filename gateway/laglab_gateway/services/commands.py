@@ -27,11 +27,11 @@ SEE_ARM_AND_STOP = {
     mavlink.MAV_CMD_GET_HOME_POSITION,
     mavlink.MAV_CMD_DO_SET_MODE,  # there is one mode, so it changes nothing
 }
-"""What those may who need no key where others have one."""
+"""What one may ask without a key where others have one."""
 
 
 class Commands:
-    """Carries commands out. `report(id)` gives the message with this id, if it has one."""
+    """Carries commands out. `report(id)` gives the message with this id, in a list, if any."""
 
     def __init__(
         self,
@@ -51,8 +51,8 @@ class Commands:
         }
 
     def answer(self, frame: Frame, pace: Pace | None, trusted: bool) -> list[Message]:
-        """The acknowledgement, and what the command asked to be told. `pace` is the asker's, who
-        may be denied what only the `trusted` may."""
+        """The acknowledgement, and what the command asked to be told. `pace` is the asker's; unless
+        it is `trusted`, it may only see, arm and stop."""
         if (asked := _command_in(frame.message)) is None:
             return []
         command, numbers = asked

@@ -16,7 +16,7 @@ INTERVALS_US: dict[int, int] = {
     mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED: SECOND_US // 10,
     mavlink.MAVLINK_MSG_ID_ODOMETRY: SECOND_US // 10,
 }
-"""Until the watcher says otherwise; the others never."""
+"""Until the watcher says otherwise; no other message is sent."""
 
 NEVER, AS_USUAL = -1, 0
 SHORTEST_INTERVAL_US = SECOND_US // 100
@@ -30,7 +30,7 @@ class Pace:
         self._due_at: dict[int, int] = {}
 
     def set(self, number: int, interval_us: float) -> None:
-        """Of one message, by its id."""
+        """The interval of one message, by its id, or AS_USUAL or NEVER."""
         usual = INTERVALS_US.get(number, NEVER)
         if interval_us == AS_USUAL:
             self._intervals[number] = usual

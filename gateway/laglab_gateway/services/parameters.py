@@ -124,7 +124,7 @@ def standard_parameters(
 
 
 def safety_now(parameters: Parameters, ramp: float) -> Safety:
-    """The limits and times that stand there now; the ramp [s] is no parameter."""
+    """The limits and times as they are set now; the ramp [s] is no parameter."""
     v_limit, omega_limit = parameters["V_MAX"], parameters["OMEGA_MAX"]
     return _safety(v_limit or None, omega_limit or None, parameters["LINK_TIMEOUT"], ramp)
 
@@ -133,7 +133,7 @@ def safety_now(parameters: Parameters, ramp: float) -> Safety:
 def _safety(
     v_limit: float | None, omega_limit: float | None, timeout: float, ramp: float
 ) -> Safety:
-    """Checked once: it is asked for at every tick, and changes when somebody sets a parameter."""
+    """Checked once, then kept: asked for at every tick, it changes when a parameter is set."""
     return Safety(v_limit, omega_limit, timeout, ramp)
 
 

@@ -20,7 +20,7 @@ class RobotState(NamedTuple):
 
 
 Pose = tuple[float, float, float]
-"""x, y, theta [m, m, rad]; NaN stands for the start pose's."""
+"""x, y, theta [m, m, rad]; NaN stands for the start pose's coordinate."""
 
 
 class Arming:

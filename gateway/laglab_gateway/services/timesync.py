@@ -1,6 +1,6 @@
 """TIMESYNC: how far a peer's clock is from ours, and how long the way there and back takes.
 
-For a free-running gateway only: where time is simulated there are no two clocks to compare.
+Not for lock-step: where time is simulated there are no two clocks to compare.
 """
 
 from collections import deque

@@ -12,7 +12,8 @@ from laglab_gateway.services.state import RobotState
 
 
 class Ned(NamedTuple):
-    """The state in MAVLink's frames: position and velocity in the world, yaw [m, m/s, rad]."""
+    """The state in MAVLink's frames: position and velocity in the world, yaw and its
+    rate [m, m/s, rad, rad/s]."""
 
     north: float
     east: float

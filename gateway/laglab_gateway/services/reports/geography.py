@@ -63,7 +63,7 @@ class Origin:
 
 
 SOMEWHERE = Origin()
-"""Unless somebody says another place: one has to be, for a robot to be on a map at all."""
+"""Unless somebody names another place: a robot on a map must be somewhere."""
 
 
 def global_position(state: RobotState, origin: Origin) -> GlobalPositionInt:
@@ -84,7 +84,7 @@ def global_position(state: RobotState, origin: Origin) -> GlobalPositionInt:
 
 
 def gps(state: RobotState, origin: Origin) -> GpsRawInt:
-    """The same as a satellite receiver would say it, without knowing how well."""
+    """The same as a satellite receiver would say it, its accuracy unknown."""
     ned = to_ned(state)
     point = origin.at(ned.north, ned.east)
     return GpsRawInt(

@@ -37,7 +37,7 @@ REPORTS: dict[int, Callable[[Seen], Message]] = {
     ),
     mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION: lambda _: autopilot_version(),
 }
-"""By their ids."""
+"""What makes each message, by its id."""
 
 REQUESTS: dict[type[Message], int] = {
     AutopilotVersionRequest: mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION,
