@@ -33,10 +33,10 @@ def conform(
 ) -> Report:
     """Test the robot, or the controller, that answers at `url`; its run is over afterwards.
 
-    A robot is told to stand still throughout; `pace` says whether it waits for each command or has
-    a clock of its own; `scope`, of one in lock-step, whether all is tried, or only whether it gives
-    up a silent station, or only how it reads frames; `progress` is told what is tried. Raises the
-    EndpointError and KeyFileError trees.
+    A robot is never told to go faster than 1e-6 m/s; `pace` says whether it waits for each command
+    or has a clock of its own; `scope`, of one in lock-step, whether all is tried, or only whether
+    it gives up a silent station, or only how it reads frames; `progress` is told what is tried.
+    Raises the EndpointError and KeyFileError trees.
     """
     with open_endpoint(url) as endpoint:
         talk = endpoint, waits or Waits(), key_file

@@ -32,7 +32,7 @@ Said: TypeAlias = Estimate | Recall | Plan | Command
 
 
 class ControllerSession(Session):
-    """Its robot. The stimulus is the next tick, the reaction the command for it."""
+    """The controller's robot. The stimulus is the next tick, the reaction the command for it."""
 
     system, component = ROBOT_SYSTEM, ROBOT_COMPONENT
     peer = (STATION_SYSTEM, STATION_COMPONENT)
@@ -52,7 +52,7 @@ class ControllerSession(Session):
         self.tick += 1
 
     def answer_to(self, *messages: Message) -> list[Said]:
-        """What came back, up to the command, for these in one datagram. Raises NoReactionError."""
+        """What came back, up to the command, for one datagram of these. Raises NoReactionError."""
         before = len(self.heard)
         self.send(*messages)
         if self.wait_for(Command, self.waits.react):

@@ -26,7 +26,7 @@ def _answers(session: RobotSession) -> str | None:
 
 
 def _ends(session: RobotSession) -> list[End]:
-    """The answers to END, and what else of it came."""
+    """Every END that came. Raises DoesNotApplyError when none did."""
     ends = session.told(End)
     if not ends:
         raise DoesNotApplyError("END is not answered")
@@ -39,13 +39,13 @@ def _once(session: RobotSession) -> str | None:
 
 
 def _at_its_tick(session: RobotSession) -> str | None:
-    """Not before the newest that we have said, which is one that we have heard of it."""
+    """Not before the tick that our END named, which the robot had begun."""
     wrong = [each.tick for each in _ends(session) if each.tick < session.tick]
     return f"END at tick {session.tick} is answered with tick {wrong[0]}" if wrong else None
 
 
 def _gives_up(session: RobotSession) -> str | None:
-    """Where END has ended its run, in another one."""
+    """In another run, as END has ended the first."""
     try:
         session.meet(session.waits.react)
     except NoReactionError as error:

@@ -14,7 +14,7 @@ from laglab_protocol.signing.signature import Signer
 
 @dataclass(frozen=True)
 class Forged:
-    """A frame whose every part can be replaced; `raw` is it on the wire."""
+    """A frame whose every part can be replaced; `raw` is what travels."""
 
     payload: bytes
     message_id: int

@@ -149,7 +149,7 @@ def _signed_with(session: Session, forged: Forged, key: bytes, at: int) -> bytes
 
 
 def _wrong_key(session: Session, forged: Forged) -> bytes:
-    """And far in the future, so that one who believes it refuses us from then on."""
+    """Stamped far in the future too, so that one who believes it refuses us from then on."""
     _key(session)
     return _signed_with(session, forged, bytes(32), signing_time() + 10**9)
 

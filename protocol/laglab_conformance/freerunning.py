@@ -44,7 +44,7 @@ LINK_TIMEOUT = 0.5
 
 
 class FreeRunningSession(RobotSession):
-    """Its station. The stimulus is a command stamped with the newest tick that was heard, the
+    """The robot's station. The stimulus is a command stamped with the newest tick heard, the
     reaction a measurement that tells of it, or of a later one, as the command in force.
 
     A robot that names a command by a stamp that is one off has reacted: which item that fails is
@@ -96,7 +96,7 @@ def _rate(session: FreeRunningSession) -> tuple[float, float]:
     began, first = _next_tick(session)
     start, over = len(session.heard), began + session.waits.react / 2
     while time.monotonic() < over:
-        # As a station does: a robot may slow down without.
+        # As a station does: without commands a robot may slow down.
         session.send(session.command(session.told(Tick)[-1].tick))
         session.listen(COMMAND_EVERY, lambda _: False)
     ended, last = _next_tick(session)
@@ -107,7 +107,8 @@ def _rate(session: FreeRunningSession) -> tuple[float, float]:
 
 
 def _next_tick(session: FreeRunningSession) -> tuple[float, int]:
-    """When the next one came that had to be waited for: what had piled up tells no time."""
+    """When the next tick came that had to be waited for, and which: what had piled up tells no
+    time. Raises NoReactionError."""
     for _ in range(MOST_PILED_UP):
         asked = time.monotonic()
         if session.wait_for(Tick, session.waits.react) is None:

@@ -18,7 +18,8 @@ AnySession = TypeVar("AnySession", bound=Session, contravariant=True)
 
 @dataclass(frozen=True)
 class Item(Generic[AnySession]):
-    """`check` returns what is wrong, None when nothing is."""
+    """`check` returns what is wrong, None when nothing is. It may raise NoReactionError and
+    DoesNotApplyError."""
 
     group: str
     name: str
@@ -31,8 +32,8 @@ def carry_out(
 ) -> tuple[Result, ...]:
     """Every item in its turn; one that fails does not keep the others from being tried.
 
-    Only without the first, that the peer is there at all, is there nothing to try them on.
-    `progress` is told what is tried.
+    Only where the first fails, that the peer is there at all, are the others not tried. `progress`
+    is told what is tried.
     """
 
     def tried(item: Item[AnySession]) -> Result:
@@ -69,7 +70,7 @@ def _result(item: Item[AnySession], session: AnySession) -> Result:
 
 
 def reacts_soon(session: Session) -> str | None:
-    """Nine ordinary exchanges: as a median, each must be over within `SOON`."""
+    """The median of nine ordinary exchanges must be over within `SOON`."""
     if session.waits.react > Waits().react:
         raise DoesNotApplyError(f"it is given {session.waits.react:g} s for everything")
     times = []

@@ -1,4 +1,4 @@
-"""The items on plans: whether a robot goes on by one; whether a station's are whole."""
+"""The items on plans: a robot goes on by one, and follows none that lacks a part."""
 
 from laglab_conformance.items import Item
 from laglab_conformance.robot import CREEP, RobotSession, creep, creeps, measurements
@@ -25,7 +25,7 @@ def _reads_off(session: RobotSession) -> str | None:
 
 
 def _stand(session: RobotSession) -> None:
-    """Until its measurements tell that it does: behind a delay they tell of the plan for longer."""
+    """Until its measurements tell that it stands: behind a delay they go on telling of the plan."""
     session.exchange()
     for _ in range(session.longest_delay):
         if measurements(session)[-1].v == 0.0:

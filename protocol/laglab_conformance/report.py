@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 
 
 class Mark(Enum):
-    """Of one item."""
+    """What came of one item."""
 
     PASSED = "passed"
     FAILED = "FAILED"

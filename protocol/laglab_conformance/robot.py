@@ -1,4 +1,4 @@
-"""What the kit does with any robot: we are its station, and no item makes it move."""
+"""What the kit does with any robot: we are its station, and no item drives it faster than CREEP."""
 
 import math
 import time
@@ -40,20 +40,20 @@ ROUNDED = 1e-3
 
 
 class RobotSession(Session):
-    """Its station. The stimulus is the command for its tick."""
+    """The robot's station. The stimulus is the command for its tick."""
 
     system, component = STATION_SYSTEM, STATION_COMPONENT
     peer = (ROBOT_SYSTEM, ROBOT_COMPONENT)
     tick = 0
     longest_delay = 0
-    """Exchanges after the one in which a command was taken, by which a measurement tells of it."""
+    """Within so many exchanges after the one that took a command, a measurement tells of it."""
     plans = False
     """Whether it was seen to go on by a plan."""
 
     def __init__(self, endpoint: Endpoint, waits: Waits, key_file: Path | None) -> None:
         super().__init__(endpoint, waits, key_file)
         self.said: set[int] = set()
-        """The stamps of all commands."""
+        """The stamps of all commands that were sent."""
 
     def connect(self) -> None:
         self.meet(self.waits.appear)
@@ -78,11 +78,11 @@ class RobotSession(Session):
         return super().forged(message)
 
     def command(self, tick: int, v: float = 0.0, estimates: int = 0, plan: int = 0) -> Command:
-        """Stand still."""
+        """A command for `tick`; by default, to stand still."""
         return Command(v, 0.0, tick, *self.peer, estimates, plan)
 
     def watch(self, until: Callable[[Frame], bool], seconds: float) -> Frame | None:
-        """What comes while nothing that is meant for now is commanded any more."""
+        """As `listen`, while nothing is commanded that is meant for now."""
         return self.listen(seconds, until)
 
     def go_on(self) -> None:
@@ -97,7 +97,7 @@ class RobotSession(Session):
         return answer
 
     def order(self, number: int, first: float = 0.0) -> CommandAck:
-        """A command (MAV_CMD) and its acknowledgement."""
+        """The acknowledgement of a command (MAV_CMD). Raises NoReactionError."""
         long = CommandLong(first, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, number, *self.peer, 0)
         ack = self.ask(long, CommandAck)
         if ack.command != number:
@@ -128,7 +128,7 @@ def batches(session: RobotSession) -> list[tuple[Batch, Tick]]:
 
 def creep(session: RobotSession) -> Measurement | None:
     """Creep, by a command with the session's tick; the first measurement that tells of that, or
-    None when none does, as of a robot that drives no speed so low. Raises NoReactionError."""
+    None when none does, as where the robot drives at no speed so low. Raises NoReactionError."""
     before = len(session.heard)
     session.send(session.command(session.tick, v=CREEP))
     if not session.reacts(session.waits.react):
@@ -174,7 +174,7 @@ def _settings(session: RobotSession) -> str | None:
 
 
 def _recalls(session: RobotSession) -> str | None:
-    """Which speeds were in force just before the newest measurement: as that measurement told."""
+    """The speeds in force just before the newest measurement must be those that it told."""
     session.exchange()
     newest = measurements(session)[-1]
     if newest.tick == 0:
@@ -182,7 +182,7 @@ def _recalls(session: RobotSession) -> str | None:
     asked, before = Recall(newest.tick - 1, 1, *session.peer), len(session.heard)
     deadline = time.monotonic() + 2 * session.waits.react
     while time.monotonic() < deadline:
-        session.send(asked, session.command(session.tick, estimates=1))  # which counts the question
+        session.send(asked, session.command(session.tick, estimates=1))  # it counts the question
         session.reacts(session.waits.react)
         if told := session.told(Applied, before):
             return _as_asked(told[0], asked, newest)

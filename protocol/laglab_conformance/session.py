@@ -37,7 +37,7 @@ class DoesNotApplyError(Exception):
 
 
 class Session(ABC):
-    """One side's counterpart. `heard` is all that came."""
+    """What stands opposite the peer under test. `heard` is all that came."""
 
     system: int
     component: int
@@ -95,11 +95,11 @@ class Session(ABC):
         return made
 
     def send(self, *messages: Message) -> None:
-        """Send messages in one datagram, as they should be."""
+        """Send messages in one datagram, each in its usual frame."""
         self.endpoint.send(b"".join(self.forged(message).raw for message in messages))
 
     def told(self, kind: type[M], since: int = 0) -> list[M]:
-        """The messages of this kind that came, from so many frames on."""
+        """The messages of this kind that came, from frame number `since` on."""
         messages = (frame.message for frame in self.heard[since:])
         return [message for message in messages if isinstance(message, kind)]
 

@@ -16,13 +16,13 @@ from laglab_conformance.session import DoesNotApplyError
 from laglab_protocol.messages.loop import NO_COMMAND, Applied, Measurement, Tick
 
 APART = 0.001
-"""[s] What comes less far apart may as well have come in one piece."""
+"""[s] What comes closer together may as well have come in one piece."""
 
 
 def tick_comes_first(session: RobotSession) -> bool:
     """Whether most measurements come nearer to the tick before them than to the one after them.
 
-    Only a line that is full keeps both as far away.
+    Only on a line that is full are the two equally far.
     """
     early = late = 0
     for since, until in _gaps(session):
@@ -57,8 +57,8 @@ def _counts(session: RobotSession) -> str | None:
 
 
 def _echoes(session: RobotSession) -> str | None:
-    """Each measurement names an earlier command that there was; none moves, but by one before
-    ours; and the one that creeps is named as that."""
+    """Each measurement names an earlier command that was sent; none tells of motion but by commands
+    from before ours, or by our creeping one, under its own name."""
     first = session.told(Tick)[0].tick
     stamp = session.tick
     told = creep(session)

@@ -15,7 +15,7 @@ class Listener:
     """One end of a link, and the receiver of what comes over it.
 
     A datagram is a unit; on a stream frames come in pieces, and only a real silence tells that the
-    rest of one is lost, or that it was none.
+    rest of one is lost, or that it was no frame.
     """
 
     def __init__(
@@ -26,7 +26,7 @@ class Listener:
         self._now = now
         self._last_byte = now()
         self.taken = 0
-        """Bytes that came the last time."""
+        """Bytes that came at the last `listen`."""
 
     def listen(self, timeout: float) -> list[Frame]:
         """The frames that are whole with what arrives within `timeout` [s]."""
@@ -47,5 +47,5 @@ class Listener:
 
     @property
     def refused(self) -> Mapping[Refusal, int]:
-        """By reason, from how many start bytes so far no frame was taken."""
+        """How many start bytes so far led to no frame, by reason."""
         return self._receiver.refused

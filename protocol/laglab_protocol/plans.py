@@ -10,7 +10,7 @@ OPEN = 64
 """Ticks by which the rest of a plan may be behind what was stamped later."""
 
 FIRST = range(1, LONGEST_PLAN + 1, PLANNED)
-"""The first elements of a plan's frames."""
+"""The elements that a plan's frames may begin with."""
 
 Speeds = tuple[float, float]
 """v [m/s], omega [rad/s]."""
@@ -42,7 +42,7 @@ class Planned(NamedTuple):
 
 
 def frames_of(command: Command) -> int:
-    """How many carry its plan."""
+    """How many LAGLAB_PLAN carry its plan."""
     return -(-command.plan // PLANNED)
 
 
@@ -67,10 +67,10 @@ class _Open(NamedTuple):
 
 
 class Assembly:
-    """What belongs to one command comes in several frames, in any order, and some may be lost:
+    """Puts commands together: each comes in several frames, in any order, and some may be lost;
     then nothing of it is followed.
 
-    The rest is given up by later stamps: whoever takes frames sees to it that stamps grow.
+    Later stamps make it give up what is not whole: whoever takes frames sees to it that they grow.
     """
 
     def __init__(self) -> None:

@@ -19,7 +19,8 @@ S = TypeVar("S", bound=Stamped)
 
 class Playout(Generic[S]):
     """Gives out each message `bound` ticks after its stamp, and not sooner; one that comes later
-    than that is late, and never given out. So all have the same delay."""
+    than that is late, and never given out. So all have the same delay. Raises ValueError for a
+    `bound` below 1."""
 
     def __init__(self, bound: int) -> None:
         if bound < 1:
@@ -29,7 +30,7 @@ class Playout(Generic[S]):
         self._taken = 0
 
     def take(self, tick: int, came: Iterable[S]) -> list[S]:
-        """What came at `tick`; those that are late."""
+        """Take what came at `tick`; returns those that are late."""
         late = []
         for message in came:
             if tick > message.tick + self.bound:

@@ -21,7 +21,7 @@ class Ration:
         self._filled = float("-inf")
 
     def left(self, now: float) -> float:
-        """At `now` [s], which must not go back; 0 and less: nothing."""
+        """What is left at `now` [s], which must not go back; 0 or less: nothing."""
         more = (now - self._filled) * self._per_second
         self.rest = min(self._at_once, self.rest + more)
         self._filled = now

@@ -19,7 +19,7 @@ MENDED = {
     Refusal.AHEAD: "signed over a minute ahead of the clock here: set the clocks of both "
     "machines; where they are right now, make a new key",
 }
-"""By reason: these are about keys and clocks, and people can mend them. `key`: by this option."""
+"""By reason: about keys and clocks, which people can mend. `key` is the option's name."""
 
 
 class Refusals:

@@ -14,7 +14,7 @@ class Setting(NamedTuple):
     spelled: str
     unit: str = ""
     limit: bool = False
-    """It may be lower for the station: then the robot is never asked for more than it does."""
+    """It may be lower for the station: then the robot is never asked for more than it can do."""
 
 
 SETTINGS = (
@@ -42,7 +42,7 @@ def refuse_other_sample_time(robot: Settings, station: Settings) -> None:
 
 
 def differences(robot: Settings, station: Settings) -> str:
-    """What else the two were told differently, in one line; empty when nothing matters."""
+    """What the two were told differently besides, in one line; empty when there is nothing."""
     found = (_difference(setting, robot, station) for setting in SETTINGS)
     return "; ".join(filter(None, found))
 

@@ -9,7 +9,7 @@ DIGITS = 3
 
 
 class Quantiles(NamedTuple):
-    """Durations [s] within which half of them stayed, 99 %, all."""
+    """Durations [s] that half of them, 99 % and all did not exceed."""
 
     p50: float
     p99: float

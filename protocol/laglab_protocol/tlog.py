@@ -17,8 +17,8 @@ def tlog_record(time_us: int, frame: bytes) -> bytes:
 
 
 def read_tlog(path: Path) -> Iterator[tuple[int, Frame]]:
-    """The frames of the log with their times [us]; a record cut short at the end is left out, and
-    so are messages that the dialect does not have. The log may be of any length.
+    """The frames of a log of any length, with their times [us]; a record cut short at the end is
+    left out, and so are messages that the dialect does not have.
 
     Raises TlogError when it cannot be read, or where a record is no frame.
     """

@@ -45,8 +45,9 @@ def place_in_pymavlink() -> Path:
 def generate(xml: Path, language: str, output: Path) -> None:
     """Run mavgen (MAVLink 2) on `xml`, which may include the dialects that pymavlink carries.
 
-    `language` is one of mavgen's names: C, Python3, WLua, … `output` is a folder for C and a file
-    for Python3 and WLua. mavgen evaluates enum values, so `xml` must be the caller's own.
+    `language` is one of mavgen's names: C, Python3, WLua, … `output` is a file for Python3
+    and WLua, a folder for the others. mavgen evaluates enum values, so `xml` must be the caller's
+    own.
     Raises DialectError with mavgen's words when it refuses.
     """
     from pymavlink.generator import mavgen
@@ -74,7 +75,7 @@ def generate(xml: Path, language: str, output: Path) -> None:
 
 
 def generate_into(language: str, directory: Path, xml: Path | None = None) -> Path:
-    """Our dialect, or another, in one of LANGUAGES for those who write firmware: where it is.
+    """Generate our dialect, or another, in one of LANGUAGES; returns the file or folder.
 
     WLua is the dissector for Wireshark: `wireshark -X lua_script:laglab.lua`. Raises DialectError.
     """

@@ -1,4 +1,4 @@
-"""The narrow thing that every endpoint is."""
+"""The narrow interface of every link, and of every endpoint."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Hashable
@@ -24,7 +24,7 @@ class Link(ABC):
     @abstractmethod
     def fileno(self) -> int:
         """A descriptor that is readable when `receive` would return at once; -1 if there is none,
-        for the far end is in this very process."""
+        because the far end is in this very process."""
 
     @abstractmethod
     def send(self, data: bytes, to: Address | None = None) -> None:
@@ -54,13 +54,13 @@ class Link(ABC):
         return
 
     def leave_peer(self) -> None:
-        """The talk with the peer is over: for udpin nobody is it, and all are heard alike, until
-        another is accepted. Nothing happens elsewhere.
+        """The talk with the peer is over: udpin has no peer, and hears all alike, until another
+        is accepted. Nothing happens elsewhere.
         """
         return
 
     def reopen(self) -> None:
-        """After FarEndGoneError: open the same again. Raises the EndpointError tree."""
+        """After FarEndGoneError: open the same again. Raises EndpointError when that fails."""
         return
 
 

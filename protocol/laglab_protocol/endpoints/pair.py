@@ -13,7 +13,7 @@ from laglab_protocol.errors import PortBusyError
 
 
 class Lane:
-    """From the program at one port to the program at the other."""
+    """The way from the program at one port to the program at the other."""
 
     def __init__(self, source: Endpoint, destination: Endpoint, baud: int) -> None:
         self.source = source

@@ -86,7 +86,7 @@ class _Tty(Endpoint):
             raise self._stalled(len(data))
 
     def _write(self, data: bytes) -> bytes:
-        """What there was no room for."""
+        """Writes what there is room for; returns the rest."""
         try:
             return data[os.write(self._descriptor, data) :] if data else data
         except BlockingIOError:
@@ -116,8 +116,8 @@ class SerialPort(_Tty):
         super().__init__(_spelled(device, baud), self._port.fileno())
 
     def reopen(self) -> None:
-        """The number of a pty that is gone is given to the next program that makes one, so a pty
-        counts as plugged in again only where its link was made anew."""
+        """A pty counts as plugged in again only where its link was made anew: its number goes to
+        the next program that makes one."""
         self._port.close()
         self._descriptor = NOWHERE
         plug = _plug(self._device)

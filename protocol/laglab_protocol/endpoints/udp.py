@@ -18,10 +18,10 @@ NOBODY_THERE = (ConnectionRefusedError, ConnectionResetError)
 """As Linux and as Windows say it, on the next call, of a datagram that found nobody."""
 
 STRANGERS_DATAGRAM = 2048
-"""Bytes of a stranger's that are read, more than a path carries in one piece; the rest is not."""
+"""Bytes that are read of a stranger's datagram: more than a path carries in one piece."""
 
 STRANGERS_A_SECOND = 8192
-"""Bytes of strangers' that are read while there is a peer: a ground station says a tenth."""
+"""Bytes that are read from strangers while there is a peer: a ground station sends a tenth."""
 STRANGERS_EVERY = 2e-4
 """[s] Between two looks for them while there is a peer."""
 
@@ -54,7 +54,7 @@ class _Udp(Endpoint):
 
 
 class UdpIn(_Udp):
-    """Bound to an address; sends to the peer last accepted (see Endpoint.accept_peer).
+    """Bound to an address; sends to the peer last accepted (see Link.accept_peer).
 
     The peer has a queue of its own, and is heard before strangers, who are rationed. Where the
     system gives it none, everybody is heard as they come.
@@ -75,7 +75,7 @@ class UdpIn(_Udp):
         self._watched: set[socket.socket] = set()
 
     def fileno(self) -> int:
-        """Of all the queues that may be read now."""
+        """One for all the queues that may be read now."""
         if self._apart is None:
             return self._socket.fileno()
         self._watch({self._apart, *([self._socket] if self._may_hear_strangers else [])})
@@ -118,7 +118,7 @@ class UdpIn(_Udp):
         return data
 
     def _is_strangers_turn(self) -> bool:
-        """Not at each look: the peer's next datagram would be found later for it."""
+        """Not at each look, or the peer's next datagram would be found later."""
         now = monotonic()
         if now < self._next_look:
             return False

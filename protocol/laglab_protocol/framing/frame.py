@@ -41,7 +41,7 @@ class Frame(Struct, frozen=True, gc=False):
 
     @property
     def signed(self) -> bool:
-        """Whether it carries a signature; if it was delivered, one of the key's holders'."""
+        """Whether it carries a signature; if a receiver delivered it, one made with our key."""
         return bool(self.raw[2] & SIGNED)
 
 
@@ -103,13 +103,13 @@ def decode(buffer: bytes, start: int, signed_too: bool = True) -> Frame | Refusa
 
 
 def extent(buffer: bytes, start: int) -> int:
-    """Where the frame ends that its header claims at `start`, of which all is there."""
+    """Where the frame at `start` ends by its header, which must be there whole."""
     signature = SIGNATURE_SIZE if buffer[start + 2] & SIGNED else 0
     return start + HEADER_SIZE + buffer[start + 1] + CRC_SIZE + signature
 
 
 def is_intact(buffer: bytes, start: int) -> bool:
-    """Whether the CRC is right of a frame that was refused for something else."""
+    """Whether a frame that was refused for something else has the right CRC."""
     layout = LAYOUT_OF_ID.get(int.from_bytes(buffer[start + 7 : start + 10], "little"))
     end = start + HEADER_SIZE + buffer[start + 1]
     if layout is None:

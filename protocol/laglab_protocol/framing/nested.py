@@ -1,8 +1,8 @@
 """Packet in packet: what looks like a frame inside a frame that was refused.
 
 Whoever may choose the payload of somebody else's message (a text, a file, a tunnel) can put a whole
-frame into it. Once the outer frame is refused, for noise on the radio flipped a bit of it, or for
-its signature, a receiver that looks on inside would deliver the inner one.
+frame into it. Once the outer frame is refused, because noise on the radio flipped a bit of it, or
+for its signature, a receiver that looks on inside would deliver the inner one.
 """
 
 from laglab_protocol.framing.frame import (
@@ -32,8 +32,8 @@ def outer_end(buffer: bytes, start: int) -> int:
 def was_whole(buffer: bytes, start: int, end: int, refusal: Refusal, aligned: bool) -> bool:
     """Whether what was refused is a frame from `start` to `end`, and no false start.
 
-    Its CRC tells; where that is wrong, or cannot be known, that it stands right behind the frame
-    before it (`aligned`), and nothing or the next one right behind it.
+    Its CRC tells; where that is wrong, or cannot be known, its place does: right behind the frame
+    before it (`aligned`), with nothing or the next one right behind it.
     """
     if aligned and (end == len(buffer) or buffer[end] == START):
         return True

@@ -45,7 +45,7 @@ class Receiver:
 
     def __init__(self, verifier: Verifier | None = None, nested: bool | None = None) -> None:
         """`nested`: whether a frame inside another that was whole and was refused is delivered all
-        the same; by default where there is a key, for then it is its holder's own."""
+        the same; by default where there is a key, for then one of its holders made it."""
         self._nested_too = verifier is not None if nested is None else nested
         self._nested = 0
         self._aligned = True

@@ -9,7 +9,7 @@ NO_COMMAND = -1
 """Measurement.command_tick when no command had come into force."""
 
 UNANNOUNCED = 256
-"""More frames than LAGLAB_TICK or LAGLAB_COMMAND can announce: so many are never asked for."""
+"""More frames than LAGLAB_TICK or LAGLAB_COMMAND can announce: no more need be kept."""
 
 DIALECT_VERSION = 3
 """As the dialect's XML has it."""
@@ -25,10 +25,10 @@ LONGEST_PLAN = 240
 """Ticks: sixteen frames, that one LAGLAB_COMMAND can announce and one datagram carry."""
 
 NO_PROBE = 4294967295
-"""In Probe.came, where none is told of."""
+"""In Probe.came, where no arrival is told of."""
 
 PROBE_LAGS = (0, 16, 240)
-"""Of Probe.came, by place: an arrival is told so many arrivals later."""
+"""By place in Probe.came: an arrival is told so many arrivals later."""
 
 PROBE_FILLER = 180
 """Bytes that a probe may be longer than its other fields."""
@@ -55,7 +55,8 @@ class Tick(Message, frozen=True):
 
 
 class Measurement(Message, frozen=True):
-    """Robot: the pose measured at `tick` [m, m, rad], the command then in force [m/s, rad/s]."""
+    """Robot: the pose measured at `tick` [m, m, rad], and the command in force until then
+    [m/s, rad/s]."""
 
     x: float
     y: float
@@ -95,7 +96,8 @@ class Command(Message, frozen=True):
 
 
 class Estimate(Message, frozen=True):
-    """Station: the estimate at `tick` after its correction [m, m, rad], and its covariance."""
+    """Station: the estimate at `tick` after its correction [m, m, rad], and its covariance [m²,
+    m rad, rad²], the upper triangle."""
 
     x: float
     y: float

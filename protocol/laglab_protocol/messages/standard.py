@@ -58,7 +58,7 @@ class SystemTime(Message, frozen=True):
 
 
 class Ping(Message, frozen=True):
-    """A ping, target 0, or the answer to one, at whom it came from."""
+    """A ping, with target 0, or the answer to one, with its sender as target."""
 
     time_usec: int
     seq: int

@@ -121,7 +121,7 @@ def timestamps_path(key_file: Path, system: int, component: int) -> Path:
 class Codec:
     """A sender and a receiver for one (system, component), signed when there is a key file.
 
-    A context manager: at its end the last timestamps are on disk.
+    A context manager: at its end the last timestamps are on disk. Raises KeyFileError.
     """
 
     def __init__(self, system: int, component: int, key_file: Path | None = None) -> None:
@@ -136,7 +136,7 @@ class Codec:
     def on_another_link(
         self, allow_unsigned: frozenset[str] = frozenset()
     ) -> tuple[Sender, Receiver]:
-        """For one more link: frames are numbered apart there; what was said on any is known.
+        """For one more link: its frames are numbered apart; what was said on one counts on all.
 
         `allow_unsigned` names the messages that need no signature there.
         """
@@ -166,7 +166,7 @@ def refuse_open_door(
 ) -> None:
     """Raise UnsignedLinkError when strangers can reach `endpoint` and no key keeps them out.
 
-    `option` is where that key is given, `harm` what they could do.
+    `option` is where that key is given, `harm` is what strangers could do.
     """
     if not (endpoint.loopback or key_file or unsigned_allowed):
         raise UnsignedLinkError(

@@ -53,7 +53,7 @@ class Place:
 
 
 class Timestamps:
-    """The place of each stream, our own included. These forget it at the end."""
+    """The place of each stream, our own included, kept only as long as the program runs."""
 
     def __init__(self) -> None:
         self.places: dict[Stream, Place] = {}
@@ -64,7 +64,7 @@ class Timestamps:
         return {stream: place.last for stream, place in self.places.items()}
 
     def reserve(self, stream: Stream, timestamp: int) -> int:
-        """Before `timestamp` counts: up to which one may the stream go on without asking again."""
+        """Asked before `timestamp` counts: up to which one the stream may go on without asking."""
         del stream
         return timestamp + AHEAD
 
@@ -110,7 +110,8 @@ class Signer:
 
 
 class Verifier:
-    """Tells which frames may pass; a frame that may not changes nothing here."""
+    """Tells which frames may pass; a frame that may not changes nothing here. `allow_unsigned`:
+    names of the messages that need no signature."""
 
     def __init__(
         self,
@@ -126,7 +127,7 @@ class Verifier:
         self._clock = clock
 
     def refuses(self, frame: Frame) -> Refusal | None:
-        """Why `frame` may not pass, None when it may. `allow_unsigned` holds message names."""
+        """Why `frame` may not pass, None when it may. Raises KeyFileError where `reserve` does."""
         raw = frame.raw
         if not raw[2] & SIGNED:
             allowed = layout_of(frame.message).name in self._allow_unsigned
@@ -151,7 +152,7 @@ class Verifier:
         return None
 
     def _earliest_new(self) -> int:
-        """What was said later than we accept now was said by a clock that was wrong, ours too."""
+        """A new stream starts later than this. What is too far ahead came of a wrong clock."""
         now = self._clock()
         believed = [last for last in self._timestamps.last.values() if last <= now + MINUTE]
         return max(now, *believed, 0) - MINUTE
