@@ -1,8 +1,8 @@
-"""The robot as a Functional Mock-up Unit: its build, and the stepper that drives it.
+"""Robots as Functional Mock-up Units: their build, and the steppers that drive them.
 
-The plant is (1) and (3) of docs/theory.md with wheel and sensor noise; `Robot` steps it by one
-sample, `Fleet` many of them at once. What needs FMPy is loaded when it is first used: who only
-talks to a robot does without.
+The differential drive is (1) and (3) of docs/theory.md with wheel and sensor noise; `Robot` steps
+it by one sample, `Fleet` many of them at once; `foreign` steps any FMU, also the other robots that
+ship. What needs FMPy is loaded when it is first used: who only talks to a robot does without.
 """
 
 from importlib import import_module

@@ -68,17 +68,17 @@ def host_platform() -> Platform:
 
 
 def c_compiler() -> list[str]:
-    """The command of the C compiler to use on this machine, for it: $CC first, ziglang last.
+    """The command of the C compiler that compiles for this machine: $CC first, ziglang last.
 
     Raises:
-        CompilerNotFoundError: there is none, ziglang neither.
+        CompilerNotFoundError: there is none, not even ziglang.
         BuildError: there is none but ziglang, and this platform is none of PLATFORMS.
     """
     return host_compiler() or zig_compiler(host_platform())
 
 
 def host_compiler() -> list[str] | None:
-    """The host's own: $CC, else cc, gcc or clang on the PATH; None without."""
+    """The command of the host's own: $CC, else cc, gcc or clang on the PATH; None without."""
     chosen = os.environ.get("CC", "").strip()
     for candidate in [chosen] if chosen else ["cc", "gcc", "clang"]:
         words = shlex.split(candidate)
@@ -108,10 +108,10 @@ def compile_library(
     compiler: Sequence[str],
     headers: Path | None = None,
 ) -> None:
-    """Compiles C sources in a folder into one shared library there, which asks for libm itself.
+    """Compiles C sources in a folder into one shared library there, which loads libm by itself.
 
     Works in that folder with relative names, so that its place does not show in the library.
-    `headers` is a folder of other people's, whose warnings are theirs.
+    `headers` is a folder of other people's headers, whose warnings are theirs.
 
     Raises:
         BuildError: the compiler failed; with what it said.

@@ -26,10 +26,10 @@ class Fleet(Stepper):
 
     @classmethod
     def open(cls, robots: Sequence[RobotParameters]) -> Self:
-        """Robots at their start poses, tick 0 sampled; robot i is the single robot of robots[i].
+        """Robots at their start poses, tick 0 sampled; robot i moves as a `Robot` of robots[i].
 
         Raises:
-            ValueError: no robots, or their sample times differ; no such integration.
+            ValueError: no robots, or their sample times differ; no such integration or seed.
             FmuNotBuiltError: the FMU is not there.
             CallError: it does not start, or refuses a parameter.
         """

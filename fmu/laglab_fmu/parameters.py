@@ -75,7 +75,8 @@ def values(rows: Sequence[Mapping[str, float]], names: Sequence[str]) -> list[fl
 
 
 class Reading(NamedTuple):
-    """What the FMU gives at a tick: pose, last sample's measurement, body speeds; m, rad, s."""
+    """What the FMU gives at a tick: pose and last sample's measurement [m, m, rad],
+    body speeds [m/s, rad/s]."""
 
     x: float
     y: float

@@ -24,7 +24,7 @@ class Robot(Stepper):
             version: 2 or 3, of FMI; both give the same bits.
 
         Raises:
-            ValueError: no such version or integration.
+            ValueError: no such version, integration or seed.
             FmuNotBuiltError: the FMU is not there.
             CallError: it does not start, or refuses a parameter.
         """
@@ -61,7 +61,7 @@ class Robot(Stepper):
         """Starts again, with other parameters, without loading anything anew.
 
         Raises:
-            ValueError: no such integration.
+            ValueError: no such integration or seed.
             CallError: the FMU refuses a parameter; reset again with better ones.
         """
         self.restart([parameters])

@@ -1,7 +1,7 @@
 """One FMU instance in co-simulation, through fmpy, its per-tick calls made on reused arrays.
 
-FMPy's own methods make lists and arrays at each call, which costs more than the step itself. They
-serve for the life cycle here; the rest calls the functions of the same library directly.
+FMPy's own methods make lists and arrays at each call, which costs more than the step itself. Here
+they serve for the life cycle; all else calls the functions of the same library directly.
 """
 
 import ctypes
@@ -215,7 +215,7 @@ def open_slave(path: Path, make: Callable[[str], Slave], stack: ExitStack) -> Sl
     """
     folder = Path(tempfile.gettempdir(), f"laglab-fmu-{secrets.token_hex(8)}")
     stack.callback(shutil.rmtree, folder, ignore_errors=True)
-    folder.mkdir(mode=0o700)  # after that, for an interrupt may come right now
+    folder.mkdir(mode=0o700)  # after the callback, as an interrupt may come in between
     try:
         fmpy.extract(path, str(folder), include=_is_needed)
         slave = make(str(folder))

@@ -66,7 +66,7 @@ class Stepper:
         """Starts again with other parameters, without loading anything anew.
 
         Raises:
-            ValueError: the sample times differ.
+            ValueError: the sample times differ; no such integration or seed.
             CallError: the FMU refuses a parameter; restart with better ones.
         """
         self._tick, self._sample_time = 0, common_sample_time(robots)

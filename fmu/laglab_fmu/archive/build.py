@@ -22,7 +22,7 @@ ZIP_DATE = (1980, 1, 1, 0, 0, 0)
 
 
 def build_fmus(directory: Path, platforms: Sequence[Platform] = ()) -> list[Path]:
-    """Builds the FMUs of every robot that ships, for FMI 2 and 3, and Fleet3.fmu, into a directory.
+    """Builds the FMUs of every robot that ships, of FMI 2 and 3, and Fleet3.fmu, in a directory.
 
     Args:
         directory: where the FMUs go; made if missing.
@@ -34,7 +34,7 @@ def build_fmus(directory: Path, platforms: Sequence[Platform] = ()) -> list[Path
 
     Raises:
         CompilerNotFoundError: there is none; says what to install.
-        BuildError: the compiler failed, or a source is missing.
+        BuildError: the compiler failed, a source is missing, or no binary is known for here.
     """
     if platforms:
         compilers = {platform: zig_compiler(platform) for platform in platforms}
@@ -55,7 +55,7 @@ def build_fmus(directory: Path, platforms: Sequence[Platform] = ()) -> list[Path
 def _compile(
     model: Model, folder: Path, compilers: Mapping[Platform, Sequence[str]]
 ) -> dict[Platform, bytes]:
-    """One library with both versions for each platform; for macOS, one for all processors."""
+    """For each platform a library of both versions of FMI; for macOS one for all processors."""
     for name, text in c_files(model).items():
         (folder / name).write_bytes(text)
     sources = sorted(path.name for path in folder.glob("*.c"))

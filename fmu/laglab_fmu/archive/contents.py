@@ -45,7 +45,7 @@ def own_files(folder: str) -> Path:
 
 
 def c_files(model: Model = ROBOT) -> dict[str, bytes]:
-    """The C sources of both versions by name, the generated header included."""
+    """The C sources of both versions by name, with the generated header. Raises BuildError."""
     src = own_files("src")
     folders = src, src / "faces", src / "robots" / model.folder
     files = {
@@ -62,7 +62,11 @@ def fmi_headers() -> Path:
 
 
 def fmu_contents(name: str, binaries: Mapping[Platform, bytes]) -> dict[str, bytes]:
-    """All files of an FMU, such as Robot2, by their path in the archive."""
+    """All files of an FMU, such as Robot2, by their path in the archive.
+
+    Raises:
+        BuildError: a source, or the licence of the headers, is missing.
+    """
     identifier, version = name[:-1], int(name[-1])
     model, fleet = model_of(name), identifier == FLEET_NAME
     sources = _sources(model, version)

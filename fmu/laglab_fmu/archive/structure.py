@@ -15,7 +15,7 @@ def structure_2(
     index: Mapping[str, str],
     reference: Mapping[str, int],
 ) -> None:
-    """FMI 2.0's, which numbers the variables by their place in the description."""
+    """Adds that of FMI 2.0, which numbers the variables by their place in the description."""
 
     def tell(group: str, roles: set[Role], at_start: bool = False) -> None:
         unknowns = SubElement(structure, group)
@@ -33,7 +33,7 @@ def structure_2(
 
 
 def structure_3(root: Element, variables: Iterable[Variable], reference: Mapping[str, int]) -> None:
-    """FMI 3.0's, which goes by value references."""
+    """Adds that of FMI 3.0, which goes by value references."""
 
     def tell(group: str, roles: set[Role], at_start: bool = False) -> None:
         for variable in variables:

@@ -18,14 +18,14 @@ ASKS_TO_END = "it asks to end the simulation"
 
 
 class _HeldInput:
-    """For FMPy's solver: inputs do not change within a step."""
+    """What FMPy's solver asks for inputs: they do not change within a step."""
 
     def apply(self, _time: float) -> None:
         """Nothing to do."""
 
 
 class Integrator:
-    """From initialization on; `fmu` is in event mode."""
+    """Moves `fmu`, which is in event mode, in solver steps of at most `longest` [s]."""
 
     def __init__(self, fmu: Any, description: ModelDescription, longest: float) -> None:
         self._fmu = fmu
@@ -70,7 +70,7 @@ class Integrator:
         return guarded
 
     def step(self, time: float, end: float, write: Callable[[], None] | None) -> None:
-        """From `time` to `end` [s]; `write` puts the inputs that are new.
+        """Moves from `time` to `end` [s]; `write` sets the inputs, None when they are as before.
 
         Raises CallError, and FMICallException.
         """
@@ -91,7 +91,7 @@ class Integrator:
                 self._solver.reset(time)
 
     def _advance(self, time: float, target: float) -> tuple[bool, float]:
-        """Whether there is an event, and when."""
+        """Moves on, to `target` at most: whether there is an event, and the time reached [s]."""
         if target <= time:
             return True, time
         try:
@@ -109,7 +109,7 @@ class Integrator:
         return bool(state_event or step_event), time
 
     def _update(self, time: float) -> None:
-        """The discrete states, until they rest; then on in continuous time."""
+        """Updates the discrete states until they rest; then time is continuous again."""
         needed = True
         while needed:
             update = self._fmu.updateDiscreteStates if self._is_3 else self._fmu.newDiscreteStates

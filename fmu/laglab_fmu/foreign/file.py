@@ -32,7 +32,7 @@ class FmuFile:
 
     @classmethod
     def read(cls, path: Path) -> "FmuFile":
-        """Raises FmuFileError: there is no such file, or it is no FMU of FMI 2 or 3."""
+        """Reads an FMU. Raises FmuFileError: there is no such file, or it is none of FMI 2 or 3."""
         if not path.is_file():
             raise FmuFileError(f"{path}: there is no such file")
         try:
@@ -55,7 +55,7 @@ class FmuFile:
 
     @property
     def version(self) -> int:
-        """2 or 3, of FMI."""
+        """Of FMI: 2 or 3."""
         return int(self.description.fmiMajorVersion)
 
     @property
@@ -68,7 +68,7 @@ class FmuFile:
         return tuple(name for name, offered in there.items() if offered is not None)
 
     def interface(self) -> Interface:
-        """The one that is used. Raises FmuFileError: it has neither, or no binary for here."""
+        """The one that is used. Raises FmuFileError: there is none, or no binary for here."""
         if not self.interfaces:
             raise FmuFileError(f"{self.path} has neither co-simulation nor model exchange")
         if self.folder not in self.platforms:
@@ -82,7 +82,7 @@ class FmuFile:
 
     @property
     def folder(self) -> str:
-        """Of the binary for this machine. Raises BuildError: none is known."""
+        """FMI's name for the folder of this machine's binary. Raises BuildError: none is known."""
         platform = host_platform()
         return platform.fmi2_folder if self.version == 2 else platform.fmi3_folder
 
@@ -93,7 +93,8 @@ class FmuFile:
 
 
 def _described(path: Path) -> tuple[ModelDescription, str]:
-    """Many tools write what the schema does not allow and everybody can read."""
+    """The description, and what is wrong with it: many tools write what the schema does not allow
+    and everybody can read."""
     try:
         return fmpy.read_model_description(path), ""
     except ValidationError as error:

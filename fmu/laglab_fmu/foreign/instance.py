@@ -34,7 +34,7 @@ class Log:
         self.lines = deque[str](maxlen=KEPT)
 
     def hear(self, *told: Any) -> None:
-        """FMI's logger: the status stands second to last of all but the text."""
+        """FMI's logger, of either version: the text is its last argument."""
         *_, text = told
         line = (text or b"").decode(errors="replace") if isinstance(text, bytes) else str(text)
         self.lines.append(" ".join(line.split()))
@@ -79,7 +79,7 @@ def _started(file: FmuFile, interface: str, folder: Path, log: Log) -> Any:
 
 
 def _library(file: FmuFile, interface: str, folder: Path) -> str | None:
-    """FMPy takes FMI 2's folder of another processor for its own."""
+    """The library's path: FMPy alone would look for FMI 2's in the folder of another processor."""
     if file.version != 2:
         return None
     offered = file.description.coSimulation
@@ -90,9 +90,10 @@ def _library(file: FmuFile, interface: str, folder: Path) -> str | None:
 
 
 def initialize(file: FmuFile, fmu: Any, values: Mapping[str, Value]) -> None:
-    """A fresh or reset instance, with the start values by the FMU's names.
+    """Starts a fresh or reset instance with these start values, by the FMU's names.
 
-    Raises FmuFileError: one of them cannot be set; FMICallException.
+    Raises FmuFileError: one of them cannot be set; CallError: the FMU refuses one; and
+    FMICallException.
     """
     left = dict(values)
     if file.version == 2:
@@ -108,7 +109,7 @@ def initialize(file: FmuFile, fmu: Any, values: Mapping[str, Value]) -> None:
 
 
 def _set(file: FmuFile, fmu: Any, values: Mapping[str, Value], settable: Any) -> dict[str, Value]:
-    """One by one, so that it can be said which was refused; those that are left."""
+    """Sets them one by one, so that it can be said which was refused; returns the others."""
     left: dict[str, Value] = {}
     for name, value in values.items():
         try:

@@ -25,7 +25,7 @@ from laglab_fmu.foreign.wiring import (
 FATAL = 4
 STATUS = ("ok", "warning", "discard", "error", "fatal", "pending")
 SAID = 3
-"""Of the log's lines so many are told when a call fails."""
+"""So many of the log's last lines are told when a call fails."""
 
 
 class ForeignRobot:
@@ -34,10 +34,11 @@ class ForeignRobot:
     def __init__(
         self, file: FmuFile, wiring: Wiring, sample_time: float, start: Sequence[float] = ()
     ) -> None:
-        """At its start.
+        """Puts the robot at its start.
 
         Args:
-            start: of what the wiring's `start` names, in that order.
+            sample_time: [s].
+            start: the values of what the wiring's `start` names, in that order.
 
         Raises:
             FmuFileError: it cannot be used so, or does not start.

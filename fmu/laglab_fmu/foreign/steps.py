@@ -8,9 +8,9 @@ SAME = 1e-9
 
 
 def substeps(file: FmuFile, sample_time: float) -> int:
-    """Into how many steps of its own an FMU cuts a sample, where it says that it can do no other.
+    """Into how many of its own steps an FMU cuts a sample [s]; 1 where it can do any step.
 
-    Raises FmuFileError: it cannot.
+    Raises FmuFileError: a sample is no whole number of them.
     """
     own = own_step(file)
     if own is None:

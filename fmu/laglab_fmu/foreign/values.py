@@ -30,7 +30,7 @@ class _Group(NamedTuple):
         return ", ".join(variable.name for variable in self.variables)
 
     def place(self, element: Element) -> int:
-        """Of an element, among the values of all of them."""
+        """Where an element is among the values of all the variables."""
         before = self.variables[: self.variables.index(element.variable)]
         return sum(map(size, before)) + element.offset
 
@@ -47,7 +47,7 @@ def _groups(elements: Sequence[Element], version: int) -> list[_Group]:
 
 
 class Reader:
-    """Of the elements, in their order."""
+    """Reads elements, in their order."""
 
     def __init__(self, fmu: Any, version: int, elements: Sequence[Element]) -> None:
         self.variables: dict[str, str] = {}
@@ -63,13 +63,13 @@ class Reader:
                     self._places[i] = number, group.place(element)
 
     def read(self) -> tuple[float, ...]:
-        """Raises FMICallException."""
+        """The elements' values. Raises FMICallException."""
         got = [get(references, *many) for get, references, many in self._calls]
         return tuple(float(got[group][place]) for group, place in self._places)
 
 
 class Writer:
-    """Of the elements, in their order; other elements of an array keep their start value."""
+    """Writes elements, in their order; other elements of an array keep their start value."""
 
     def __init__(self, fmu: Any, version: int, elements: Sequence[Element]) -> None:
         self.variables: dict[str, str] = {}
@@ -87,7 +87,7 @@ class Writer:
             self.variables[f"fmi{version}Set{group.type}"] = group.names
 
     def write(self, numbers: Sequence[float]) -> None:
-        """Raises FMICallException."""
+        """Sets the elements to these. Raises FMICallException."""
         for put, references, values, places in self._calls:
             for i, place in places:
                 values[place] = numbers[i]

@@ -14,7 +14,7 @@ from laglab_fmu.foreign.file import FmuFile
 from laglab_fmu.foreign.steps import substeps
 
 Value = float | bool | str | Sequence[float]
-"""Of a parameter; whole numbers too."""
+"""A parameter's; whole numbers too."""
 REAL = ("Real", "Float64", "Float32")
 NUMBERS = (*REAL, "Integer", "Enumeration", "Boolean")
 LIKE = 0.5
@@ -42,12 +42,12 @@ class Element(NamedTuple):
 
 
 def size(variable: ModelVariable) -> int:
-    """Of a scalar, 1."""
+    """How many numbers a variable holds: a scalar 1."""
     return prod(variable.shape or ())
 
 
 def input_elements(file: FmuFile, names: Mapping[str, str]) -> list[Element]:
-    """What the FMU can be told on its way. Raises FmuFileError, naming the key."""
+    """What the FMU can be told while it runs. Raises FmuFileError, naming the key."""
     found = [_found(file, f"inputs.{ours}", theirs) for ours, theirs in names.items()]
     for ours, element in zip(names, found, strict=True):
         variable = element.variable

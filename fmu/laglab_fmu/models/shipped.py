@@ -16,12 +16,12 @@ FLEET_NAME = "Fleet"
 
 @dataclass(frozen=True)
 class Model:
-    """One of them."""
+    """A robot that ships."""
 
     name: str
-    """Of its FMUs, whose model identifier it is, too."""
+    """Its FMUs' name without the version of FMI, and their model identifier."""
     folder: str
-    """Of its C files, in `src/robots`; its motion for readers is in `content/robots`."""
+    """Of its C files, in `src/robots`; for readers, `content/robots` has how it moves."""
     description: str
     variables: Sequence[Variable]
     has_fleet: bool = False
@@ -33,7 +33,7 @@ class Model:
 
     @property
     def fmus(self) -> tuple[str, ...]:
-        """Model name and version of FMI."""
+        """The names of its FMUs: each is a model name and the version of FMI."""
         own = (f"{self.name}2", f"{self.name}3")
         return (*own, f"{FLEET_NAME}3") if self.has_fleet else own
 
@@ -53,7 +53,7 @@ MODELS = (
 
 
 def model_of(fmu: str) -> Model:
-    """Whose FMU that is."""
+    """The robot whose FMU that is, such as Robot2."""
     return next(model for model in MODELS if fmu in model.fmus)
 
 

@@ -11,7 +11,7 @@ from enum import Enum
 from laglab_fmu.parameters import INTEGRATIONS, LARGEST_SEED, RobotParameters
 
 START = RobotParameters().by_name()
-"""Of the parameters, by default."""
+"""The default values of the parameters."""
 
 
 class Kind(Enum):
@@ -75,13 +75,13 @@ def parameter(
     nominal: float = 1.0,
     start: float | None = None,
 ) -> Variable:
-    """Without a `start` it has that of RobotParameters."""
+    """A parameter; without a `start` it has that of RobotParameters."""
     start = START[name] if start is None else start
     return Variable(name, Role.PARAMETER, description, declared, start, *bounds, nominal)
 
 
 def gain(name: str, description: str) -> Variable:
-    """Of some noise; it may change on the way."""
+    """The gain of some noise, which may change while the robot moves."""
     return Variable(name, Role.TUNABLE, description, "Ratio", 1.0, 0.0, 1e3, 1.0)
 
 
@@ -129,7 +129,7 @@ def moves(inputs: Names, v: Names, omega: Names = ()) -> tuple[Variable, ...]:
 FREE = (None, None)
 VARIANCE = (0.0, 1e6)
 DRAWN = ("seed", "noise")
-"""What every noise follows from."""
+"""The parameters that every noise follows from."""
 _AXES = (
     ("x", "Position along x", "Position"),
     ("y", "Position along y", "Position"),
