@@ -10,7 +10,7 @@
 /* Puts the robot at its start pose, with sample 0 taken. Call again after changing parameters. */
 void robot_start(Robot *robot);
 
-/* Body speeds v, omega from the present inputs and the wheel noise in force (1). */
+/* Body speeds from the present inputs and the drive's noise in force; for the differential drive (1). */
 void robot_speeds(Robot *robot);
 
 /* der_x, der_y, der_theta at the present pose, after `robot_speeds`. */

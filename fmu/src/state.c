@@ -1,7 +1,7 @@
 /* Saved states. The noise needs none of its own: it follows from seed and sample, which are in the Robot.
  *
  * Serialized: little-endian words of eight bytes: the checksum of all that follows and of a token, the head, then the
- * robots' fields in order. The token is one and the same for all FMUs: they understand each other's states.
+ * robots' fields in order. The token is one and the same for all FMUs of a model: they understand each other's states.
  */
 #include <math.h>
 #include <stdlib.h>
