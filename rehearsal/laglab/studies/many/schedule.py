@@ -112,7 +112,7 @@ class _Robot:
             self._commands.push(tick, ask)
 
     def settle(self, tick: int) -> None:
-        """What has come across takes force, and the failsafe watches."""
+        """What has come across comes into force, and the failsafe watches."""
         for message, _ in self._commands.due(tick):
             if isinstance(message, Recall):
                 self._owed.owe(self._memory.answers(message))
