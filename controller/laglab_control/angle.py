@@ -12,7 +12,7 @@ def wrap(angle: float) -> float:
 
 
 def direction(angle: float) -> tuple[float, float]:
-    """Cosine and sine; NaN when the angle is not finite."""
+    """Cosine and sine of an angle [rad]; NaN when it is not finite."""
     try:
         return math.cos(angle), math.sin(angle)
     except ValueError:

@@ -16,7 +16,7 @@ def chi_square_tail(x: float, degrees: int) -> float:
 
 @cache
 def chi_square_bound(tail: float, degrees: int) -> float:
-    """Above which X is with probability `tail`, 0 < tail < 1: by bisection, to 1e-12 of it."""
+    """What X exceeds with probability `tail`, 0 < tail < 1: by bisection, to 1e-12 of it."""
     low, high = 0.0, float(degrees)
     while chi_square_tail(high, degrees) > tail:
         low, high = high, 2 * high

@@ -35,7 +35,7 @@ from laglab_control.robot import RobotModel, Ways
 INITIAL_VARIANCE = 1e-4
 """P_0 = INITIAL_VARIANCE I by default [m^2, m^2, rad^2]."""
 FAR = 1000.0
-"""[m] No run leads a robot further from the goal: nothing that one is about is ever there."""
+"""[m] No run leads a robot further from its goal: an estimate beyond this has gone astray."""
 
 
 def is_far(pose: Iterable[float], goal: Iterable[float]) -> bool:
@@ -50,7 +50,7 @@ class StationConfig:
     """What the station is told. Poses [m, m, rad], delays in ticks.
 
     `estimator` is one of ESTIMATORS, an installed plug-in, or `module:Class`. Raises PluginError
-    for one that cannot be had, and ConfigError, naming the field, when one is not right.
+    for one that cannot be had, and ConfigError, naming the field, for a value that cannot be.
     """
 
     estimator: str = "popf"
@@ -65,8 +65,8 @@ class StationConfig:
     initial_estimate: ArrayLike = (0.0, 0.0, 0.0)
     initial_covariance: ArrayLike = field(default_factory=lambda: np.eye(3) * INITIAL_VARIANCE)
     command_delay: Ticks = 0
-    """n, until the stamps tell: n is estimated from the command that each measurement echoes, and
-    the delay m of a measurement is read from its own stamp."""
+    """n, until the echoes tell: it is then estimated from the command that each measurement
+    echoes. The delay m of a measurement is read from its own stamp."""
     plan: Ticks = 0
     """H: how many ticks are planned beyond each command."""
     guard: bool = False
@@ -89,7 +89,7 @@ class StationConfig:
 
 
 def without_blind_guard(config: StationConfig) -> StationConfig:
-    """The same, and no guard around an estimator that does not show how wild a measurement is."""
+    """The same, unguarded if the estimator does not show how wild a measurement is."""
     estimator = estimator_kind(config.estimator, config.estimator_options).make(config.model)
     blind = isinstance(estimator, Brought) and not estimator.is_watchable
     return replace(config, guard=False) if blind else config
@@ -115,7 +115,9 @@ class Control(NamedTuple):
 class Controller:
     """Step 3 of a tick (docs/tick.md), as pure functions.
 
-    At tick 0 `answer(start(), ...)`; at every later tick `answer(advance(control), ...)`.
+    At tick 0 `answer(start(), ...)`; at every later tick `answer(advance(control), ...)`. What
+    somebody brought may raise PluginFailedError, in any of them; a guard around an estimator that
+    does not show how wild a measurement is raises PluginError.
     """
 
     config: StationConfig
@@ -182,7 +184,8 @@ class Controller:
     ) -> Control:
         """The tick's correction and command, from all that arrived.
 
-        The robot is to stand still when there is no estimate to drive it by, or it has diverged.
+        The robot is to stand still where no estimate is there to drive it by, or the estimate has
+        diverged. Raises StampError for a measurement from before tick 0 or from the future.
         """
         estimate, flight, last, pose, P, _ = self.correct(control, measurements, echoes, recalled)
         if pose is None or self.diverged(pose):
@@ -215,7 +218,7 @@ class Controller:
         echoes: Sequence[Echo] = (),
         recalled: Sequence[Applied] = (),
     ) -> Control:
-        """The tick's correction alone; `drive` is still the last command."""
+        """The tick's correction alone; `drive` is still the last command. Raises StampError."""
         estimate, flight, drive, *_ = control
         flight, inputs = hear(self._robot(estimate), flight, echoes, recalled)
         if self._guard and isinstance(estimate, Watched):
@@ -244,7 +247,7 @@ class Controller:
         return is_far(pose, self.config.goal) and is_far(pose, self._began)
 
     def warning(self, control: Control) -> str | None:
-        """The estimator's."""
+        """What nobody who relies on the estimate may overlook; None while there is nothing."""
         return self._estimator.warning(control.estimate)
 
     def innovation(self, control: Control) -> Innovation | None:
@@ -252,8 +255,8 @@ class Controller:
         return self._estimator.innovation(control.estimate)
 
     def at_arrival(self, control: Control) -> Belief | None:
-        """x̂_{k+n}, by which the command was made, and the covariance that the model claims for it;
-        None where there is no estimate."""
+        """The estimate of x_{k+n} by which the command was made, and the covariance that the model
+        claims for it; None where there is no estimate."""
         x, P, flight = control.pose, control.P, control.flight
         if x is None or P is None:
             return None

@@ -2,9 +2,9 @@
 
 Until an echo comes an input is only believed. It may have come into force a little earlier or later
 than the commands usually do; when the echoes stop coming, the last one known may have been held all
-the while, or the robot has stopped. Each is a vector d of what the pose [m, m, rad] would differ
-by, and its claimed covariance is d d^T. A robot that has plans does as believed as long as they
-reach: what it applies then is in all of them.
+the while, or the robot has stopped. By each the pose [m, m, rad] would differ by a vector d, for
+which d d^T is claimed. A robot that has plans does as believed as long as they reach: what it
+applies then is in all of them.
 """
 
 from collections.abc import Iterator
@@ -32,7 +32,7 @@ class Missed(NamedTuple, Generic[F]):
     turn: F
     """[rad]."""
     length: F
-    """[m] The way over which it would have."""
+    """[m] The way over which it would have turned so."""
 
 
 def doubt(flight: Flight, robot: RobotModel, x: Vector) -> Matrix | None:
@@ -71,7 +71,7 @@ def _held(flight: Flight, Ts: float, believed: int) -> Missed[float]:
 
 
 def _stopped(flight: Flight, Ts: float) -> Missed[float]:
-    """As if it had then stopped by itself."""
+    """As if the robot had stopped by itself STOPS_AFTER later."""
     since = flight.told.known + 1 + round(STOPS_AFTER / Ts)
     if since >= flight.tick:
         return Missed(0.0, 0.0, 0.0)
@@ -80,7 +80,7 @@ def _stopped(flight: Flight, Ts: float) -> Missed[float]:
 
 
 def _shifted(flight: Flight, Ts: float, believed: int, spread: float) -> Missed[float]:
-    """As if they had all come `spread` ticks later."""
+    """As if all commands had come into force `spread` ticks later."""
     if believed <= 0:
         return Missed(0.0, 0.0, 0.0)
     v, omega = flight.told.in_force.tolist()

@@ -19,13 +19,13 @@ from laglab_control.robot import Ways
 STAND = np.zeros(2)
 """The input before any command is in force."""
 RECENT = 25
-"""Echoes that the estimate of n is the median of."""
+"""So many echoes tell delays of which n is the median."""
 MEMORY = 1024
 """Ticks for which sent commands are kept."""
 GIVEN_UP = 256
 """Ticks after which an input that was not told is taken to have been as believed."""
 FEW = 20
-"""So many ticks with an input that may have been another one make no difference that shows."""
+"""So many ticks whose input may have been another one make no difference that shows."""
 
 
 class Echo(NamedTuple):
@@ -48,9 +48,9 @@ class Told(NamedTuple):
     newest: int = -1
     """The tick of the newest command of those."""
     known: int = -1
-    """Up to this tick it may be known what was in force; after it, it is believed."""
+    """Up to this tick what was in force may be known; later it is only believed."""
     missing: tuple[int, ...] = ()
-    """The ticks up to there of which it is not, in order."""
+    """The ticks up to `known` of which nothing was told, in order."""
     in_force: Vector = STAND
     """The input at `known`."""
     before: Vector = STAND
@@ -214,7 +214,7 @@ def _added(sums: Log[Sums], u: Vector) -> Sums:
 
 
 def believed_at(flight: Flight, tick: int) -> Vector:
-    """What is believed to have been in force on [t_tick, t_{tick+1}), tick < `flight.tick`."""
+    """The input (2,) believed to be in force on [t_tick, t_{tick+1}), tick < `flight.tick`."""
     items, length = flight.sent
     index = length - (flight.tick - (tick - flight.command_delay))
     return items[index] if 0 <= index < length else STAND

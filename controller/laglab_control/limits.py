@@ -14,11 +14,11 @@ from laglab_control.errors import ConfigError
 from laglab_control.model import Matrix, Vector, constant
 
 ROUNDING = 1e-9
-"""Of its largest element: so far a covariance may be from symmetric and positive semidefinite."""
+"""The share of its largest element by which a covariance may be asymmetric, or not semidefinite."""
 
 
 class Limit(NamedTuple):
-    """Of a finite number: it is this at least, or `above` it; `whole`: without a fraction."""
+    """What a finite number must be: `least` or more, or `above` it; `whole`: without a fraction."""
 
     least: float
     above: bool = False
@@ -67,7 +67,7 @@ def _limit(hint: object) -> Limit | None:
 
 
 def check(made: object) -> None:
-    """Raises ConfigError, naming the field, when one is beyond its limits."""
+    """Raises ConfigError, naming the field, for a value beyond its limits."""
     of: type = type(made)
     for name, limit in limits(of).items():
         value = getattr(made, name)
@@ -76,7 +76,7 @@ def check(made: object) -> None:
 
 
 def finite_pose(values: ArrayLike, name: str) -> Vector:
-    """Read-only (3,) [m, m, rad]. Raises ConfigError, naming it, for what is not finite."""
+    """Read-only (3,) [m, m, rad]. Raises ConfigError, naming it, for what is no finite pose."""
     return _finite(values, (3,), name)
 
 

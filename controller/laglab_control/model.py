@@ -38,7 +38,7 @@ class Model(Protocol):
         ...
 
     def measurement_noise(self, x: Vector) -> Matrix:
-        """V R V^T (q, q), the covariance of v~ in (26)."""
+        """V R V^T (q, q), the covariance of V v in (26)."""
         ...
 
     def innovation(self, z: Vector, expected: Vector) -> Vector:

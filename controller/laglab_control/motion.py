@@ -12,7 +12,7 @@ F = TypeVar("F", float, Vector)
 
 
 class Motion(NamedTuple, Generic[F]):
-    """A rigid motion in the frame of its start, and the covariance of its end in that frame.
+    """A rigid motion [m, m, rad] in the frame of its start, and the covariance of its end there.
 
     Of one robot in plain floats: at this size they are faster than arrays.
     """
@@ -32,7 +32,7 @@ STILL = Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 class Way(NamedTuple, Generic[F]):
-    """Where a rigid motion leads, in the frame of its start; nothing of how surely."""
+    """Where a rigid motion leads [m, m, rad], in the frame of its start; nothing of how surely."""
 
     x: F
     y: F
@@ -86,7 +86,7 @@ def composed_along(heading: tuple[F, F], first: Motion[F], second: Motion[F]) ->
 
 
 def moved(x: Vector, P: Matrix, motion: Motion[float]) -> tuple[Vector, Matrix]:
-    """Where a pose x (3,) of covariance P (3, 3) gets by a motion: it is one from the origin."""
+    """Where a pose x (3,), P (3, 3) gets by a motion: a pose is itself a motion from the origin."""
     start_x, start_y, start_theta = x.tolist()
     (xx, xy, xt), (_, yy, yt), (_, _, tt) = P.tolist()
     start = Motion(start_x, start_y, start_theta, xx, xy, xt, yy, yt, tt)

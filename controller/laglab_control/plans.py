@@ -23,7 +23,7 @@ class Plans(NamedTuple):
     """
 
     horizon: int
-    """How many entries follow a command at most, H."""
+    """H: how many entries follow a command at most."""
     behind: int
     made: Log[tuple[Demand, ...]]
 

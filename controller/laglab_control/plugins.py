@@ -13,7 +13,7 @@ from typing import Any, Literal, NamedTuple, Protocol
 from laglab_control.errors import ControlError, StampError
 
 SHOWN, LONGEST = 60, 400
-"""[characters] Of an answer that is wrong, and of what an exception says."""
+"""[characters] At most so much of a wrong answer, and of an exception's text, is shown."""
 HERE = ""
 """The current directory, in Python's search path: last, so that nothing there hides a library."""
 Group = Literal["laglab.estimators", "laglab.laws", "laglab.plants"]
@@ -79,7 +79,7 @@ def installed_plugins(group: Group) -> Iterator[Plugin]:
 
 
 def source_of(group: Group, name: str) -> Path | None:
-    """The file of the module that a class comes from; None where there is none to be seen."""
+    """The file of the module that a class comes from; None where none is found."""
     values = (
         [name]
         if is_module_class(name)
@@ -95,7 +95,7 @@ def source_of(group: Group, name: str) -> Path | None:
 
 
 def made(name: str, maker: Maker, *told: object, **options: object) -> object:
-    """What the class makes of it. Raises PluginError when it refuses."""
+    """What `maker` makes of what it is told. Raises PluginError when it fails."""
     try:
         return maker(*told, **options)
     except KeyboardInterrupt:
@@ -105,7 +105,7 @@ def made(name: str, maker: Maker, *told: object, **options: object) -> object:
 
 
 def refuse_misfit(name: str, brought: object, method: str, *parameters: str) -> None:
-    """Raises PluginError unless it has a method that can be given so much."""
+    """Raises PluginError unless `brought` has the method, and it takes so many parameters."""
     try:
         function = getattr(brought, method, None)
     except Exception as error:
@@ -122,20 +122,18 @@ def refuse_misfit(name: str, brought: object, method: str, *parameters: str) -> 
 
 
 def called(name: str, brought: object, method: str, *told: object) -> Any:
-    """What the method of a stranger's answers. Raises PluginFailedError when it fails."""
+    """What a method of `brought` answers. Raises PluginFailedError, and StampError as it comes."""
     try:
         return getattr(brought, method)(*told)
     except (StampError, KeyboardInterrupt):
         raise  # as an estimator must; and nobody's fault
-    except (
-        BaseException
-    ) as error:  # GeneratorExit and SystemExit too: it is to end no more than this
+    except BaseException as error:  # SystemExit too: no stranger is to end the whole program
         raise PluginFailedError(f"{name}.{method}: {one_line(error)}") from error
 
 
 @contextmanager
 def at_tick(tick: int) -> Iterator[None]:
-    """Whatever somebody brought fails within is said with the tick."""
+    """Any PluginFailedError from within names the tick."""
     try:
         yield
     except PluginFailedError as error:
@@ -162,7 +160,7 @@ def shown(answer: object) -> str:
 
 
 def _short(text: str, longest: int) -> str:
-    """In one line that changes no terminal."""
+    """In one line, without what would control a terminal."""
     line = " ".join("".join(each if each.isprintable() else " " for each in text).split())
     return line if len(line) <= longest else f"{line[:longest]}..."
 
@@ -181,7 +179,7 @@ def _loaded(entry: EntryPoint, name: str) -> Maker:
             found = getattr(found, part)
     except KeyboardInterrupt:
         raise
-    except BaseException as error:  # as strangers do
+    except BaseException as error:  # it is a stranger's
         raise PluginError(f"{name}: {one_line(error)}") from error
     if not callable(found):
         raise PluginError(f"{name}: {entry.value} is no class, but {shown(found)}")

@@ -30,8 +30,9 @@ def replay(
 ) -> Replay:
     """Feed the record to the estimator, from the prior x (d,), P (d, d) of tick 0.
 
-    `inputs` (N, p): row k was in force on [t_k, t_{k+1}). `arrivals`: N+1 lists of measurements,
-    the k-th holds those that arrived at tick k. Raises ValueError when the lengths do not fit.
+    `inputs` (N, p): row k was in force on [t_k, t_{k+1}). `arrivals`: N+1 lists, the k-th of the
+    measurements that arrived at tick k. Raises ValueError when the lengths do not fit, and
+    StampError for a measurement from before tick 0 or from the future.
     """
     shape = (len(inputs) + 1, len(x))
     answer = Replay(*(np.full(s, np.nan) for s in (shape, (*shape, len(x)), shape[:1])))

@@ -13,7 +13,7 @@ from laglab_control.motion import Motion, Way, moved
 
 
 class Ways(Protocol):
-    """What tells where a robot gets."""
+    """Something that tells where a robot gets."""
 
     def way(self, u: Vector) -> Way[float]:
         """Where one tick with input u leads."""
@@ -24,9 +24,10 @@ class Ways(Protocol):
 class RobotModel:
     """The differential-drive robot: x = [x, y, theta] [m, m, rad], u = [v, omega] [m/s, rad/s].
 
-    `Q` (2, 2) is the covariance of the wheel speeds' noise [w_L, w_R] [(rad/s)^2], `R` (3, 3) that
-    of the measurement [m^2, m^2, rad^2]. The defaults are the paper's (30). theta is not wrapped.
-    Raises ConfigError, naming the field, when one cannot be.
+    `sample_time` [s], `wheel_radius` [m], `track` [m]. `Q` (2, 2) is the covariance of the wheel
+    speeds' noise [w_L, w_R] [(rad/s)^2], `R` (3, 3) that of the measurement [m^2, m^2, rad^2]. The
+    defaults are the paper's, (30). theta is not wrapped. Raises ConfigError, naming the field, for
+    a value that cannot be.
     """
 
     sample_time: Positive = 0.01
@@ -41,20 +42,20 @@ class RobotModel:
         object.__setattr__(self, "R", covariance(self.R, 3, "R"))
 
     def f(self, x: Vector, u: Vector) -> Vector:
-        """(3)."""
+        """(3): the pose (3,) one tick later."""
         x_, y, theta = x.tolist()
         v, omega = u.tolist()
         Ts, (cosine, sine) = self.sample_time, direction(theta)
         return np.array((x_ + Ts * v * cosine, y + Ts * v * sine, theta + Ts * omega))
 
     def A(self, x: Vector, u: Vector) -> Matrix:
-        """(31)."""
+        """(31), (3, 3)."""
         distance, (cosine, sine) = self.sample_time * float(u[0]), direction(float(x[2]))
         dx, dy = distance * cosine, distance * sine
         return np.array((1.0, 0.0, -dy, 0.0, 1.0, dx, 0.0, 0.0, 1.0)).reshape(3, 3)
 
     def W(self, x: Vector) -> Matrix:
-        """(32) with the sign of the third row corrected; columns w_L, w_R."""
+        """(32), (3, 2): columns w_L, w_R."""
         cosine, sine = direction(float(x[2]))
         turn = 2 / self.track
         scale = self.sample_time * self.wheel_radius / 2
@@ -79,7 +80,7 @@ class RobotModel:
         return x
 
     def H(self, x: Vector) -> Matrix:
-        """(33)."""
+        """(33), (3, 3)."""
         return identity(3)
 
     def measurement_noise(self, x: Vector) -> Matrix:

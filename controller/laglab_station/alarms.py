@@ -6,7 +6,7 @@ from laglab_protocol import MAV_SEVERITY_WARNING, Message, Statustext
 from laglab_station.report import Alarm
 
 TOLD = 100
-"""The report tells of the first ones; the rest are counted."""
+"""The report tells of so many; the rest are only counted."""
 
 
 class Alarms:
@@ -16,7 +16,7 @@ class Alarms:
         self.told: list[Alarm] = []
         self.raised = 0
         self._gated = 0
-        """Measurements, by controllers before this one."""
+        """Measurements that the controllers before this one did not use."""
 
     def note(self, controller: Controller, control: Control, tick: int) -> list[Message]:
         """What is to be said of this tick."""

@@ -17,10 +17,10 @@ MakeController = Callable[[StationConfig], Controller]
 
 
 class Driver:
-    """Who drives a robot that was met at its tick `first`.
+    """Drives a robot that was met at its tick `first`.
 
-    At tick 0 it starts where the station was told; any other is taken over from a standstill
-    (`joining`), and the tick at which its pose is known becomes `first`.
+    Met at tick 0, it starts where the station was told. Met later, it is taken over from a
+    standstill (`joining`), and the tick at which its pose is known becomes `first`.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class Driver:
         return tuple(starmap(Calibrated, self._controller.learned(self._control)))
 
     def warning(self) -> str | None:
-        """The estimator's, of the last measurements; once. Raises PluginFailedError."""
+        """The estimator's after the last measurements, once. Raises PluginFailedError."""
         unjudged, self.is_unjudged = self.is_unjudged, False
         return self._controller.warning(self._control) if unjudged else None
 
@@ -70,7 +70,10 @@ class Driver:
         self._alarms.handed_over(self._controller, self._control)
 
     def look_ahead(self, regular: bool) -> None:
-        """Do now what the next answer would wait for; `regular`: a measurement will likely come."""
+        """Do now what the next answer would wait for; `regular`: a measurement will likely come.
+
+        Raises PluginFailedError.
+        """
         if self.tick is None or self._joining is not None or self._ahead is not None:
             return
         with at_tick(self.tick + 1):
@@ -80,7 +83,7 @@ class Driver:
                 self._ahead = self._controller.expect(self._ahead, due)
 
     def answer(self, tick: int, came: Came, robot: tuple[int, int]) -> list[Message]:
-        """To the robot of that system and component. Raises PluginFailedError."""
+        """What to say to `robot` (system, component) at its `tick`. Raises PluginFailedError."""
         if self._joining is not None:
             for measurement in came.measurements:
                 self._joining = observe(self._joining, measurement, self._config.model)
@@ -92,7 +95,7 @@ class Driver:
 
     def _take_over(self, rest: Rest) -> bool:
         """From the pose at which the robot stands, with nothing but standstill in flight; False
-        where nobody drives it from."""
+        where that is FAR from the goal."""
         x, P = prior(rest, self._config.model)
         self.lost = is_far(x.tolist(), self._config.goal)
         if self.lost:

@@ -21,7 +21,7 @@ class Came(NamedTuple):
 
 
 class Coming:
-    """What has come since the last tick, and the next one will tell to be whole."""
+    """What has come since the last tick; the next one will tell whether it is whole."""
 
     def __init__(self) -> None:
         self._measurements: deque[Measurement] = deque(maxlen=UNANNOUNCED)
@@ -47,7 +47,7 @@ class PlayedOut:
 
     def __init__(self, bound: int) -> None:
         self.late = 0
-        """Came too late, and were not used."""
+        """Measurements that came too late, and were not used."""
         self._playout = Playout[Measurement](bound)
 
     def take(self, tick: int, came: Came) -> Came:
@@ -56,7 +56,7 @@ class PlayedOut:
         return Came(tuple(self._playout.due(tick)), came.recalled)
 
     def begin_anew(self) -> None:
-        """What is held is of another robot."""
+        """Drop what is held: it is another robot's."""
         self._playout.clear()
 
 
@@ -75,7 +75,7 @@ def echoes(messages: Sequence[Measurement], first: int, tick: int) -> list[Echo]
 
 
 def recalled(messages: Sequence[protocol.Applied], first: int, tick: int) -> list[Applied]:
-    """The inputs that the robot recalls, as far as it does, of ticks before the present one."""
+    """The inputs at ticks before the present one, as far as the robot recalls them."""
     told = [
         (message.first + i - first, message.v[i], message.omega[i])
         for message in messages

@@ -31,7 +31,7 @@ class Rest(NamedTuple):
 
 
 def observe(rest: Rest, measurement: Measurement, model: RobotModel) -> Rest:
-    """With one more measurement; a robot that still moved when it was sampled starts it again."""
+    """With one more measurement; if the robot still moved at its sampling, all begins again."""
     if measurement.tick <= rest.tick:
         return rest
     if measurement.v != 0 or measurement.omega != 0:
@@ -42,5 +42,5 @@ def observe(rest: Rest, measurement: Measurement, model: RobotModel) -> Rest:
 
 
 def prior(rest: Rest, model: RobotModel) -> tuple[Vector, Matrix]:
-    """x̂ (3,) and P (3, 3) at the tick of the newest measurement in the mean."""
+    """The estimate x (3,) and P (3, 3) at the tick of the newest measurement in the mean."""
     return rest.mean, model.R / rest.samples

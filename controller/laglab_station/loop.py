@@ -54,13 +54,14 @@ def run_station(
     silence_timeout: float = 3.0,
     onlooker: Onlooker | None = None,
 ) -> End:
-    """Make the station known, then answer the robot until one side ends the run; say what ended it.
+    """Make the station known, then answer the robot until one side ends the run; return the End.
 
     However it ends, the robot is told.
 
     Raises:
         RobotSilentError: the robot, once heard, says nothing for `silence_timeout` seconds.
         SettingsError: the robot ticks at another pace.
+        PluginFailedError: what somebody brought fails.
         EndpointError: the endpoint fails, and does not come back in that time.
     """
     loop = _Loop(station, listener, silence_timeout, onlooker or Onlooker())
@@ -190,7 +191,7 @@ class _Loop:
         raise error
 
     def _look_around(self) -> None:
-        """Compare what the robot was told, once it says so; pass warnings on."""
+        """Compare what both sides were told, once the robot says it; pass warnings on."""
         robot, station = self._station.robot_settings, self._station.settings
         if robot is not None and not self._compared:
             self._compared = True

@@ -6,7 +6,7 @@ from laglab_control.flight import Told
 from laglab_protocol import Recall
 
 PATIENCE = 5
-"""Ticks that a measurement may be late behind later ones, before what it tells is asked for."""
+"""Ticks by which a measurement may lag behind later ones before what it tells is asked for."""
 AGAIN = 12
 """Ticks after which a question that was not answered yet is asked again: it may be lost."""
 
@@ -40,7 +40,7 @@ def question(asked: Asked, told: Told, tick: int) -> tuple[Asked, Question | Non
 
 
 class Questions:
-    """To one robot, one after the other."""
+    """What one robot is asked, one question after the other."""
 
     def __init__(self) -> None:
         self._asked = Asked()

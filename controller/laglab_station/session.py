@@ -38,7 +38,7 @@ class SessionTick(NamedTuple):
     recalled: tuple[Applied, ...] = ()
     """What the robot recalled at this tick."""
     following: tuple[tuple[float, float], ...] = ()
-    """What the command plans to follow it [m/s, rad/s]."""
+    """What is planned to follow the command [m/s, rad/s]."""
 
 
 def read_session(path: Path) -> Iterator[SessionTick]:
@@ -50,8 +50,8 @@ def read_session(path: Path) -> Iterator[SessionTick]:
 
 
 def heard(frames: Iterable[Frame]) -> Iterator[SessionTick]:
-    """The ticks in the frames of both directions; repeats, what is not whole and what others than
-    the robot and its station said are passed over."""
+    """The ticks in the frames of both directions; passed over are repeats, what is not whole,
+    and what others than the robot and its station said."""
     arriving: list[Measurement] = []
     recalled: list[Applied] = []
     last: SessionTick | None = None

@@ -40,8 +40,8 @@ class Station:
 
     A repeated tick gets the same answer and changes nothing. A tick whose measurements did not all
     arrive gets none: the robot will repeat it. Everything else that arrives is passed over, and so
-    is every other sender once a robot was heard. One whose ticks begin again, or that was not
-    heard for LONGEST_GAP ticks, is met anew (docs/tick.md): each robot that is met has a `Driver`.
+    is every other sender once a robot was heard. A robot whose ticks begin again, or that was not
+    heard for LONGEST_GAP ticks, is met anew (docs/tick.md), each time by a `Driver` of its own.
     """
 
     def __init__(
@@ -123,7 +123,7 @@ class Station:
         )
 
     def _learned(self) -> tuple[Calibrated, ...]:
-        """What cannot be told any more is not what the report is for."""
+        """Nothing where the estimator fails: the report is given all the same."""
         try:
             return self._driver.learned()
         except PluginFailedError as error:
@@ -135,14 +135,17 @@ class Station:
         return self._framed([STATION_HEARTBEAT, self.settings])
 
     def hear(self, frames: Sequence[Frame]) -> list[bytes]:
-        """The frames to send back for these, perhaps none."""
+        """The frames to send back for these, perhaps none. Raises PluginFailedError."""
         answers: list[Message] = []
         for frame in frames:
             answers += self._hear(frame)
         return self._framed(answers)
 
     def look_ahead(self) -> None:
-        """Do now, while the robot is busy, what the next answer would wait for."""
+        """Do now, while the robot is busy, what the next answer would wait for.
+
+        Raises PluginFailedError.
+        """
         regular = self._driver.is_unjudged  # a measurement came, so at the next tick one may too
         self._look_back()
         if self._outcome is None:
@@ -154,8 +157,8 @@ class Station:
         return self._framed([self._outcome])
 
     def stop_robot(self) -> list[bytes]:
-        """The frames that have the robot stand still for good, said again until it does; nothing
-        before it was heard."""
+        """The frames that have the robot stand still for good, to be said again until it does;
+        none before it was heard."""
         if self._robot is None:
             return []
         return self._framed([emergency_stop_for(*self._robot)])
@@ -222,7 +225,7 @@ class Station:
         if self._played_out:
             self._played_out.begin_anew()
         if tick or self.tick is not None:
-            self._driver.tick = None  # nor was it ever answered, should nobody drive it
+            self._driver.tick = None  # if its driver cannot be made, it was never answered
             driver = Driver(self._config, self._make_controller, self._alarms, tick)
             self._driver.leave()
             self._driver = driver

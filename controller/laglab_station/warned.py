@@ -3,11 +3,11 @@
 from laglab_protocol import MAV_SEVERITY_EMERGENCY, MAV_SEVERITY_ERROR, Statustext
 
 MOST_TOLD = 20
-"""Texts of the robot's; it may say whatever it likes."""
+"""At most so many texts of the robot's are kept: it may say whatever it likes."""
 
 
 class Warnings:
-    """By what they are about: of each the first."""
+    """Warnings by what they are about: of each the first."""
 
     def __init__(self) -> None:
         self._texts: dict[str, str] = {}

@@ -154,7 +154,7 @@ def test_its_model_is_linearised_as_it_is(parameters):
     ("parameters", "b"), [(WheelScales(L), [0.1, -0.05]), (GyroBias(), [-0.4])]
 )
 def test_the_parameters_are_found(parameters, b):
-    """Those that the claimed covariance says, and with them the pose."""
+    """As surely as the claimed covariance says, and with them the pose."""
     inputs, poses, z = make_record(parameters, b, ticks=600)
     estimator = CalibratingEkf(ROBOT, parameters)
     state = estimator.start(START, P0)

@@ -19,8 +19,8 @@ def told(flight: Flight, tick: int, u: Vector, late: int = N) -> Flight:
 
 
 def flown(inputs: list[Vector], lates: list[int] | None = None, silent: int = 0) -> Flight:
-    """Each input sent, each in force N (or so many) ticks later, each echo M ticks late but for
-    the last `silent`."""
+    """Each input sent, each in force N ticks later (or as `lates` tell), each echo M ticks late;
+    the last `silent` echoes do not come."""
     flight = take_off(MODEL, N)
     for k, u in enumerate(inputs):
         flight, _ = send(MODEL, flight, u)

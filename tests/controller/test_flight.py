@@ -96,7 +96,7 @@ def test_the_loss_did_matter_meanwhile():
 @settings(max_examples=20, deadline=None)
 @given(st.data(), st.sampled_from(["popf", "popf-exact", "delayed-ekf"]))
 def test_jitter_losses_repeats_and_disorder_leave_nothing_wrong(data, estimator):
-    """Commands are lost, late and overtake; measurements are late, overtake and come twice. When
+    """Commands get lost, late and out of order; measurements late, out of order and twice. When
     all has been echoed, the inputs are known: without noise the estimate is exact."""
     link = Link(estimator, 3)
     command = st.one_of(st.none(), st.integers(0, 8))

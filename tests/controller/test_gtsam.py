@@ -23,11 +23,11 @@ BOUND = Apart(position=6e-4, heading=2e-4, deviations=0.06, covariance=0.04)
 def test_only_the_linearisation_is_between_the_two(seed, noise, lag):
     """x and P at every tick, with all that had arrived.
 
-    The filter linearises the motion of a tick where it was then, the smoother where it now knows
-    to have been, or last knew when the tick left its lag. That is of second order: with a tenth of
-    the noise a hundredth of the difference is left, so a tenth of its share of the standard
-    deviation. What is of first order would keep its share: two measurements left out make half a
-    standard deviation, at either noise. Measured, with GTSAM 4.3.0:
+    The filter linearises the motion of a tick where the robot seemed to be then, the smoother where
+    it seems by now to have been, or did when the tick left the lag. That is of second order: with a
+    tenth of the noise a hundredth of the difference is left, so a tenth of its share of the
+    standard deviation. What is of first order would keep its share: two measurements left out make
+    half a standard deviation, at either noise. Measured, with GTSAM 4.3.0:
 
     | noise | position | heading | in standard deviations | P |
     |---|---|---|---|---|

@@ -38,7 +38,7 @@ def test_the_approach_is_stable_up_to_its_margin_and_not_one_tick_further(law, s
 
 
 def swing(law: PolarLaw, delay: int, start: tuple[float, float, float], ticks: int) -> float:
-    """The largest |θ| of the last second, with commands `delay` ticks late and nothing else."""
+    """The largest |theta| of the last second, with commands `delay` ticks late and nothing else."""
     robot, pose, at_goal = RobotModel(), np.array(start), False
     sent, headings = [np.zeros(2)] * delay, []
     for _ in range(ticks):

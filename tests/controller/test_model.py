@@ -1,3 +1,5 @@
+"""The robot as a model: its Jacobians beside differences, its innovation, and (27)."""
+
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st

@@ -38,7 +38,7 @@ def test_only_rounding_is_between_the_two(seed):
 
     PyRecEst sorts each late event in among the others and runs its filter again from there. The
     filter is linear, so it is told here to linearise (27) where it is, each time it runs. What is
-    left are the same sums in another order. Measured, with PyRecEst 2.4.2: 1.8e-15 m, 1.8e-15 rad,
+    left is the same sums in another order. Measured, with PyRecEst 2.4.2: 1.8e-15 m, 1.8e-15 rad,
     4e-15 of P.
     """
     record = recorded(seed)

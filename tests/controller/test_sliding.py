@@ -1,3 +1,5 @@
+"""The product over a sliding window, and the log under it: right, bounded, never changed."""
+
 from collections import deque
 from operator import add
 

@@ -13,7 +13,7 @@ AWAY = np.array([0.3, -0.2, 0.1])
 
 
 def errors(gain: float, m: int, ticks: int, drives: bool = True) -> np.ndarray:
-    """|x̂_k - x_k| of a copy that begins elsewhere, with noise off."""
+    """|x^_k - x_k| of a copy that begins elsewhere, with noise off."""
     predictor = TuePredictor(MODEL, gain, gain, gain)
     true = [np.array([0.0, 0.0, 0.0])]
     state = predictor.start(true[0] + AWAY, P)
@@ -37,7 +37,7 @@ def test_a_copy_that_begins_elsewhere_comes_to_where_the_robot_is(m: int) -> Non
 
 @pytest.mark.parametrize("m", [5, 20, 60])
 def test_the_gain_that_a_delay_allows(m: int) -> None:
-    """Of e_{k+1} = e_k - Ts K e_{k-m}, that is K < 2 sin(π/(2(2m+1)))/Ts."""
+    """Of e_{k+1} = e_k - Ts K e_{k-m}, that is K < 2 sin(pi/(2(2m+1)))/Ts."""
     limit = 2 * math.sin(math.pi / (2 * (2 * m + 1))) / MODEL.sample_time
     below, above = (errors(share * limit, m, 40 * m + 500, drives=False) for share in (0.9, 1.1))
     assert below[-2 * m :, 2].max() < 0.5 * below[: 4 * m, 2].max()

@@ -123,7 +123,7 @@ def test_at_the_start_they_agree_with_differences_by_every_known(
     told: dict[str, float],
     idle: list[str],
 ) -> None:
-    """And an unknown depends on those knowns that the description says, on no other. Idle is what
+    """And an unknown depends on the knowns that the description tells, on no others. What is idle
     is beyond its limit, or commands what is."""
     model = read_model_description(str(extracted[name]))
     face = make_face(name, "CoSimulation")

@@ -1,8 +1,8 @@
 """A relay between two machines that holds datagrams back and loses some: a link, for tests.
 
 `relay.py LISTEN_HOST PORT TARGET_HOST UP DOWN JITTER LOSS`: what comes to HOST:PORT goes on to the
-same port of the target UP seconds later, answers DOWN seconds later, each and exponential JITTER;
-a share LOSS of all is lost. None overtakes another. Until it is killed.
+same port of the target UP seconds later, answers DOWN seconds later, each by an exponential JITTER
+more; a share LOSS of all is lost. None overtakes another. It runs until it is killed.
 """
 
 import heapq

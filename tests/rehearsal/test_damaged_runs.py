@@ -1,4 +1,4 @@
-"""A run one of whose files is no longer what it was: one line that names it, or a picture still."""
+"""A run one of whose files is no longer what it was: a line names it, or a picture is made."""
 
 import shutil
 from collections.abc import Callable

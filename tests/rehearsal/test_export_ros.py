@@ -85,14 +85,14 @@ Topics = dict[str, list[Logged]]
 
 
 def pose(of: Any) -> list[float]:
-    """x, y, θ."""
+    """x, y, theta."""
     assert (of.position.z, of.orientation.x, of.orientation.y) == (0, 0, 0)
     turn = 2 * math.atan2(of.orientation.z, of.orientation.w)
     return [of.position.x, of.position.y, turn]
 
 
 def covariance(of: Any) -> Any:
-    """Of x, y, θ, (3, 3)."""
+    """Of x, y, theta, (3, 3)."""
     return np.array(of.covariance).reshape(6, 6)[np.ix_([0, 1, 5], [0, 1, 5])]
 
 

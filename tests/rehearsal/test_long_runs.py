@@ -31,7 +31,7 @@ Read = Callable[[Run], Iterable[object]]
 SETTLED = 2000
 """Ticks after which every window of the two sides is full."""
 SWINGS = 4000
-"""Ticks in which all that is cut back now and then has been, more than once."""
+"""Ticks in which all that is cut back now and then has been cut back more than once."""
 ROWS = (2_000, 8_000)
 AT_A_TIME = 500
 LOSSY = {"link.command.loss": 0.02, "link.measurement.loss": 0.02}

@@ -51,7 +51,7 @@ OUTAGES = from_then_on({"outages": [[0.6, 0.9], [2.0, 0.7]]})
 @pytest.mark.parametrize("lost", [LOSING, BURSTS, OUTAGES], ids=["losses", "bursts", "outages"])
 @pytest.mark.parametrize("estimator", ["popf", "delayed-ekf"])
 def test_losing_commands_changes_nothing(estimator: str, lost: Keys) -> None:
-    """The property that plans are for: noise off, x̂_0 exact, H longer than any gap."""
+    """The property that plans are for: noise off, x^_0 exact, H longer than any gap."""
     kind = {"estimator.kind": estimator}
     undisturbed = run("fig6", SHORT, kind)
     planned = run("fig6", SHORT, kind, lost, {"link.plan": 110})
@@ -65,7 +65,7 @@ def test_losing_commands_changes_nothing(estimator: str, lost: Keys) -> None:
 
 
 def test_what_holds_the_robot_at_the_goal_is_planned_too() -> None:
-    """The law's memory runs ahead with it: entered below ε, left above 2 ε."""
+    """The law's memory runs ahead with it: entered below the tolerance, left above twice that."""
     holding = {"law.goal_tolerance": 0.2, "law.omega_max": 1.7, "start": [-1.0, -1.0, 0.0]}
     undisturbed = run("fig6", SHORT, holding)
     planned = run(

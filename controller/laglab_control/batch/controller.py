@@ -74,7 +74,7 @@ class BatchController:
 
     @property
     def robots(self) -> int:
-        """How many."""
+        """How many there are."""
         return int(np.shape(self.initial_estimates)[1])
 
     @cached_property
@@ -87,7 +87,7 @@ class BatchController:
 
     @cached_property
     def _exact(self) -> bool:
-        """Also where an odometer does not know the noise of the wheels."""
+        """Also where the wheels differ: an odometer takes them for alike."""
         return self.exact or not self._robots.wheels_are_alike
 
     @cached_property

@@ -1,4 +1,4 @@
-"""The estimators for many robots, whose measurements all come m ticks late, each of them.
+"""The estimators for many robots, each of whose measurements comes exactly m ticks late.
 
 Each does what the one of its name does in `laglab_control.estimators`, where the reasons stand.
 """
@@ -34,13 +34,13 @@ class Present(NamedTuple):
 
     pose: Pose
     turn: Turn
-    """From where the odometers of the commands in force look."""
+    """From the headings of the odometers to those of the robots."""
     P: Symmetric | None
     """What is claimed for their errors; None: nothing."""
 
 
 def present_of(belief: Belief, now: Leg) -> Present:
-    """In parts."""
+    """A belief in its parts; `now` is the leg at whose end it is."""
     return Present(pose_of(belief), Turn.between(now, belief.theta), covariance_of(belief))
 
 
@@ -66,7 +66,7 @@ class BatchEstimator(Protocol[S]):
         ...
 
     def correct(self, state: S, z: Pose) -> tuple[S, Compared | None]:
-        """With z_{k-m}, and what it was compared with."""
+        """By z_{k-m}; also what that was compared with."""
         ...
 
     def estimate(self, state: S, now: Leg) -> Present | None:
@@ -84,7 +84,7 @@ class Windowed(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class WindowedEkf(BatchEstimator[Windowed]):
-    """`delayed-ekf`, to the last bit of where the robots are."""
+    """`delayed-ekf`, its poses to the last bit."""
 
     setting: Setting
 
@@ -111,14 +111,14 @@ class WindowedEkf(BatchEstimator[Windowed]):
 
 
 class Delayed(NamedTuple):
-    """The EKF at the newest measurement's tick, where that is, and the legs from there on."""
+    """The EKF at the newest measurement's tick, the leg that led there, and those from there on."""
 
     there: Belief
     at: Leg
     turn: Turn
     legs: Log[tuple[Leg, Spread]]
     since: int
-    """How many of them lead from there to the present."""
+    """How many of `legs` lead from there to the present."""
     sums: Spread
     """Over those."""
     measured: bool
@@ -273,4 +273,4 @@ BATCHED: Mapping[str, Callable[[Setting], BatchEstimator[Any]]] = {
     "popf-printed": partial(Popf, innovation_at_k=True),
     "delayed-ekf": DelayedEkf,
 }
-"""By name: those that there are for many robots."""
+"""Those that there are for many robots, by name."""

@@ -44,7 +44,7 @@ def sent(config: StationConfig, flight: Flight, u: Speeds) -> Flight:
 
 
 def applied_of(config: StationConfig, flight: Flight) -> Leg:
-    """The commands in force, on the tick before the present."""
+    """The commands that were in force on the tick before the present."""
     return flight.legs.items[flight.legs.length - 1 - config.command_delay]
 
 

@@ -80,7 +80,7 @@ def limited(
 
 
 def polar_law(config: StationConfig) -> PolarLaw:
-    """The law. Raises ConfigError for any other: only this one is there for many robots."""
+    """The station's law. Raises ConfigError for any but PolarLaw: many robots have no other."""
     if not isinstance(config.law, PolarLaw):
         raise ConfigError(f"there is no {type(config.law).__name__} for many robots, but PolarLaw")
     return config.law

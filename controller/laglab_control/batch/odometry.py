@@ -1,8 +1,8 @@
 """The commands that many robots are sent, driven one after the other from the origin.
 
 What any stretch of them leads to is the difference of two places on that way, as if an odometer had
-been read twice: it costs no more over many ticks than over one. Rounding makes it another in the
-last bits than the product of the motions of those ticks.
+been read twice: it costs no more over many ticks than over one. By rounding it differs in the last
+bits from the product of the motions of those ticks.
 """
 
 from typing import NamedTuple, Self
@@ -77,12 +77,12 @@ class Turn(NamedTuple):
 
 Spread = NDArray[np.float64]
 """(7, robots): sums over the legs of a stretch, of which the covariance of its end is made: of
-cos^2 and of cos sin of where each sets out to, times the noise along it; of x, y, xx, xy and yy of
-where each ends, times the noise of its turn."""
+cos^2 and cos sin of the heading in which each sets out, times the noise along it; of x, y, xx, xy
+and yy of where each ends, times the noise of its turn."""
 
 
 def spread(model: RobotModel, leg: Leg) -> Spread:
-    """Of one."""
+    """Of one leg."""
     n_xx, _, _, _, _, n_tt = model.noise
     (c, s), (x, y, _) = leg.before, leg.end
     sums = np.empty((7, len(x)))
@@ -118,7 +118,7 @@ def uncertain(model: RobotModel, sums: Spread, legs: int, end: Pose) -> Symmetri
 
 
 def carried(belief: Belief, turn: Turn, way: Pose, P: Symmetric) -> Belief:
-    """`compose` of a belief and a stretch: its way as the robot sees it, its P as its odometer."""
+    """`compose` of a belief and a stretch: its way as the robot has it, its P as the odometer."""
     dx, dy, turned = way
     xx, xy, xt, yy, yt, tt = led(covariance_of(belief), dx, dy)
     further = _rotated(P, turn)

@@ -35,7 +35,7 @@ class Estimate(NamedTuple):
 
 
 def estimate_of(belief: Belief) -> Estimate:
-    """In two parts."""
+    """A belief in its two parts."""
     return Estimate(pose_of(belief), covariance_of(belief))
 
 

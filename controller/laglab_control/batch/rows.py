@@ -39,7 +39,7 @@ Heading = tuple[Row, Row]
 
 
 def headings(angle: Row) -> Heading:
-    """Of these."""
+    """Of these angles [rad]."""
     return np.cos(angle), np.sin(angle)
 
 

@@ -1,4 +1,4 @@
-"""Estimators: pure functions over immutable states, each line under the paper's equation."""
+"""Estimators: pure functions over immutable states, each step under the number of its equation."""
 
 from laglab_control.estimators.backdated import Backdated
 from laglab_control.estimators.calibrating_ekf import CalibratingEkf

@@ -22,7 +22,7 @@ class PastTick(NamedTuple):
     u: Vector | None = None
     """In force from then on; None at the present."""
     z: Vector | None = None
-    """None: nothing was measured, or has come yet."""
+    """None: nothing was measured, or it has not come yet."""
 
 
 class BackdatedState(NamedTuple):
@@ -48,7 +48,7 @@ class Backdated(Estimator[BackdatedState]):
 
     @abstractmethod
     def forward(self, x: Vector, P: Matrix, u: Vector) -> tuple[Vector, Matrix]:
-        """x (d,) and P (d, d) one tick later, with the input u = [v, omega] in force meanwhile."""
+        """x (d,) and P (d, d) one tick later, with the input u = [v, omega] (2,) in force."""
 
     @abstractmethod
     def corrected(self, x: Vector, P: Matrix, z: Vector) -> tuple[Vector, Matrix]:
@@ -86,7 +86,7 @@ class Backdated(Estimator[BackdatedState]):
         return self._again(state.tick, past, min(new), newest) if new else state
 
     def innovation(self, state: BackdatedState) -> Innovation | None:
-        """z - x and P + R of the pose, when it came to the newest measurement."""
+        """z - x and P + R of the pose, as they were before the newest measurement was used."""
         return state.innovation
 
     def _again(

@@ -25,7 +25,7 @@ METHODS = {
     "predict": ("state", "u"),
     "correct": ("state", "measurements", "inputs"),
 }
-"""That every estimator has, and what each is given."""
+"""The methods that every estimator has, and what each is given."""
 OPTIONAL = {
     "ahead": ("state", "inputs"),
     "calibrated": ("state", "robot"),
@@ -66,7 +66,7 @@ class Brought(Estimator[State]):
         return self._whole("start", self._said("start", x, P), 0)
 
     def predict(self, state: State, u: Vector) -> State:
-        """One tick further; a guard asks for no correction where nothing came."""
+        """One tick further. Looked at here too: where nothing came a guard does not correct."""
         return self._whole("predict", self._said("predict", state, u), state.tick + 1)
 
     def correct(

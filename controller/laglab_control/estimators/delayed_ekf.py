@@ -76,7 +76,7 @@ class DelayedEkf(Estimator[DelayedState[W]]):
         return DelayedState(0, logged(first), window, self.windows)
 
     def predict(self, state: DelayedState[W], u: Vector) -> DelayedState[W]:
-        """One more input in the window; unmeasured, the EKF follows `memory` ticks behind."""
+        """One more input in the window; the EKF stays at most `memory` ticks behind."""
         tick = state.tick + 1
         window = state.window.push(u, state.windows.over(u))
         predicted = DelayedState(tick, state.filtered, window, state.windows)

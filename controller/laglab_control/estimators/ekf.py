@@ -1,4 +1,4 @@
-"""`ekf`: the extended Kalman filter that takes a late measurement for a fresh one (Fig. 8)."""
+"""`ekf`: the extended Kalman filter that takes a late measurement for a fresh one, as in `fig8`."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from laglab_control.model import Matrix, Model, Vector
 
 
 class EkfState(NamedTuple):
-    """The estimate x (d,) and covariance P (d, d) at `tick`; when `newest` was sampled."""
+    """The estimate x (d,) and covariance P (d, d) at `tick`; when the `newest` z was sampled."""
 
     tick: int
     x: Vector

@@ -31,7 +31,7 @@ class EstimatorKind(NamedTuple):
     learner: Callable[[RobotModel], Estimator[Any]] | None = None
     """What takes over when a guard finds that its model is wrong."""
     admits: Mapping[str, str] = MappingProxyType({})
-    """Which checks of `laglab check` it does not hold, and why."""
+    """Which checks of `laglab check` it does not pass, and why."""
 
 
 LATE_FOR_FRESH = {
@@ -72,7 +72,7 @@ ESTIMATORS: Mapping[str, EstimatorKind] = {
     "delayed-ekf": EstimatorKind(
         "the optimum: an EKF at the measurement's tick, carried forward over the known inputs",
         lambda model: DelayedEkf(model, RigidMotions(model)),
-        # Something is wrong already: it may be more, and change sooner, than before anything was.
+        # Something is known to be wrong by then: it may be larger, and change faster, than usual.
         learner=lambda model: CalibratingEkf(model, WheelScales(model.track, 0.1, 0.1)),
     ),
     "calibrating-ekf": EstimatorKind(

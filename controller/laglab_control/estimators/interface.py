@@ -56,7 +56,7 @@ class State(Protocol):
 
     @property
     def x(self) -> Vector | None:
-        """The estimate of x_k (d,); None while there is none (only `raw`)."""
+        """The estimate of x_k (d,); None while there is none, as with `raw`."""
         ...
 
     @property
@@ -68,7 +68,7 @@ class State(Protocol):
 def pose_of(state: State) -> Vector | None:
     """The pose (3,) [m, m, rad] in the state: its `pose` if it has one, else the first three of x.
 
-    None while there is no estimate. Raises ControlError when the state holds none.
+    None while there is no estimate. Raises ControlError when the state holds no pose.
     """
     x: Vector | None = getattr(state, "pose", state.x)
     if x is None or len(x) == 3:
@@ -82,7 +82,7 @@ def pose_of(state: State) -> Vector | None:
 
 
 def claim_of(state: State) -> Matrix | None:
-    """The covariance (3, 3) that is claimed for it: the leading block of P."""
+    """The covariance (3, 3) that is claimed for the pose: the leading block of P."""
     P = state.P
     return P if P is None or len(P) == 3 else P[:3, :3]
 
@@ -119,7 +119,7 @@ class Estimator(Protocol[S]):
     def expect(self, state: S, s: int) -> S:
         """The same, prepared for a measurement sampled at `s`: its correction will take less time.
 
-        Any other may come as well. Nothing can be prepared by those that say nothing else.
+        Any other may come as well. By default nothing is prepared.
         """
         return state
 
@@ -129,7 +129,7 @@ class Estimator(Protocol[S]):
         return None
 
     def calibrated(self, state: S, robot: Ways) -> Ways:
-        """The robot as it is known by now: the one that was told, of those that learn nothing."""
+        """The robot as it is known by now; `robot` itself, if the estimator learns nothing."""
         return robot
 
     def learned(self, state: S) -> tuple[Calibration, ...]:
@@ -146,5 +146,5 @@ class Estimator(Protocol[S]):
         return self.start(x, P)
 
     def warning(self, state: S) -> str | None:
-        """What nobody who relies on this estimate must overlook; None while there is nothing."""
+        """What nobody who relies on this estimate may overlook; None while there is nothing."""
         return None

@@ -16,7 +16,7 @@ class Taken(NamedTuple):
 
 
 class Parameters(Protocol):
-    """b (p,): what makes the robot another than its model, all 0 where nothing does."""
+    """b (p,): how the robot differs from its model; all 0 where it does not."""
 
     @property
     def names(self) -> Sequence[str]:

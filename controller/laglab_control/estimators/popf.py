@@ -59,7 +59,7 @@ class PopfState(NamedTuple):
     used: Used
     compared: Compared | None = None
     expected: Correction | None = None
-    """By the measurement that is expected at this tick."""
+    """The one by the measurement that is expected at this tick."""
 
 
 @dataclass(frozen=True)
@@ -69,9 +69,9 @@ class Popf(Estimator[PopfState]):
     `innovation_at_k` takes h(x^-_k) for h(x^-_s), and `covariance_at_k` H_k for H_s, as (28) prints
     them: kept only to show what that costs.
 
-    A measurement may come at any time, in any order, up to `memory` ticks late: M* is taken from
-    its own tick on. The derivation takes the errors of measurements that are on their way at the
-    same time for independent, so P comes out too small: `popf-exact` does not.
+    A measurement may come in any order, less than `memory` ticks late: M* is taken from its own
+    tick on. The derivation takes the errors of corrections that overlap for independent, so P comes
+    out too small; that of `popf-exact` does not.
     """
 
     model: Model

@@ -19,7 +19,7 @@ class Prior(NamedTuple):
 
 
 class ExactState(NamedTuple):
-    """The estimate x (d,) and covariance P (d, d) at `tick`, and how its error hangs together
+    """The estimate x (d,) and covariance P (d, d) at `tick`, and how its error is correlated
     with those of the past."""
 
     tick: int
@@ -37,9 +37,9 @@ class ExactState(NamedTuple):
 @dataclass(frozen=True)
 class PopfExact(Estimator[ExactState]):
     """(11) with the best gain for it: (19) and (20) take the noise of corrections that overlap for
-    white, here their covariances are carried along instead.
+    white; here their covariances are carried along instead.
 
-    A measurement is used when it is newer than all used before and at most `memory` ticks late.
+    A measurement is used when it is newer than all used before and less than `memory` ticks late.
     The cost of a tick grows with the delay, and the memory with its square.
     """
 

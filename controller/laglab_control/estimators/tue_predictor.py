@@ -31,7 +31,7 @@ class TueState(NamedTuple):
     P: Matrix
     """P_0: it claims nothing of its own."""
     newest: int
-    """When the newest measurement was sampled that it was corrected by."""
+    """When the newest measurement by which it was corrected was sampled."""
     past: Log[Vector]
     """Its poses up to this tick, each as it was before it was corrected there."""
 
@@ -39,10 +39,11 @@ class TueState(NamedTuple):
 @dataclass(frozen=True)
 class TuePredictor(Estimator[TueState]):
     """x_{k+1} = f(x_k, u_k), and for a measurement of tick s, in the frame of the copy:
-    x_k + Ts K (z_s - x_s), where x_s is what it then was.
+    x_k + Ts K (z_s - x_s), where x_s is the pose that the copy had then.
 
-    The gains are in 1/s, forward, aside and of the heading. The error of a constant delay of m
-    ticks shrinks if Ts K < 2 sin(pi / (2 (2 m + 1))).
+    The gains are in 1/s, forward, aside and of the heading. With a constant delay of m ticks the
+    error shrinks if Ts K < 2 sin(pi / (2 (2 m + 1))). Raises ConfigError, naming the field, for a
+    gain that cannot be.
     """
 
     model: RobotModel

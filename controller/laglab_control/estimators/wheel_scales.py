@@ -11,15 +11,15 @@ from laglab_control.model import Vector
 class WheelScales:
     """b = [b_L, b_R]: the left wheel leads 1 + b_L times as far as believed, the right 1 + b_R.
 
-    They walk by the way that the wheel makes: a robot that stands forgets nothing.
+    Each walks with the way that its wheel makes: while the robot stands nothing is forgotten.
     """
 
     track: float
     """L [m], as believed."""
     deviation: float = 0.05
-    """Of each at first."""
+    """The standard deviation of each at first."""
     wander: float = 0.03
-    """By how much each changes on 1 m [m^-1/2], as a standard deviation."""
+    """By how much each changes over 1 m [m^-1/2], as a standard deviation."""
 
     @property
     def names(self) -> tuple[str, str]:

@@ -13,10 +13,10 @@ from laglab_control.estimators.kalman import Triangle, weighted
 from laglab_control.past.log import Log, append, logged
 
 IMPROBABLE = 1e-6
-"""Of a wild measurement, and of a window's spread: successive windows share most of what is in
+"""The level of a wild measurement, and of a spread: successive windows share most of what is in
 them, so a run of thousands of ticks seldom gets there (docs/theory.md)."""
 DEGREES = 3
-"""Of one innovation."""
+"""Degrees of freedom of one innovation."""
 WILD = chi_square_bound(IMPROBABLE, DEGREES)
 """An NIS above this is not noise."""
 SPREAD = 25
@@ -26,7 +26,7 @@ DRIFTS = (12, 40, 200)
 SUSPECT = chi_square_bound(1e-3, DEGREES)
 """N b^T S^-1 b above this is improbable: b is claimed as an error."""
 LAGGING = chi_square_bound(3e-6, DEGREES)
-"""N b^T S^-1 b above this is not noise: looked at less often, it may be a little more probable."""
+"""N b^T S^-1 b above this is not noise. It is looked at less often, so the level may be higher."""
 FEWEST_OF_SPREAD = 3
 EVERY = 3
 """The drift is looked for at each third innovation: it does not come suddenly."""
@@ -54,7 +54,7 @@ def no_evidence() -> Evidence:
 
 
 def weighed(evidence: Evidence, innovation: Sequence[float], nis: float) -> Evidence:
-    """With one more (3,); of a wild one only that it is wild."""
+    """With one more innovation (3,); of a wild one only that it is wild."""
     total, x, y, theta = evidence.newest
     if not nis <= WILD:  # nor is what is not finite
         return append(evidence, Sums(total + WILD, x, y, theta), DRIFTS[-1] + 1)
@@ -67,9 +67,9 @@ class Lag(NamedTuple):
     """The estimate lies beside what the last measurements say."""
 
     innovations: int
-    """So many."""
+    """How many."""
     mean: tuple[float, float, float]
-    """b [m, m, rad], of them."""
+    """b [m, m, rad], their mean."""
     statistic: float
     """N b^T S^-1 b, with the S of the newest: chi-square with 3 degrees if it is noise."""
 
@@ -98,7 +98,7 @@ def contradiction(evidence: Evidence, lag: Lag | None) -> Contradiction | None:
 
 
 def lagging(evidence: Evidence, weights: Triangle, before: Lag | None) -> Lag | None:
-    """The most telling of the windows' means, if it is improbable; most times what it was `before`.
+    """The most telling of the windows' means, if it is improbable; `before` where none is taken.
 
     `weights`: S^-1 of the newest innovation.
     """
@@ -115,7 +115,7 @@ def lagging(evidence: Evidence, weights: Triangle, before: Lag | None) -> Lag | 
 
 
 def windows(there: int) -> list[int]:
-    """The lengths of those for so many innovations: all that are full, and one that is not yet."""
+    """The lengths of the windows over `there` innovations: the full ones, and one not yet full."""
     full = [count for count in DRIFTS if count <= there]
     return [*full, there] if full and there < DRIFTS[-1] and there not in full else full
 

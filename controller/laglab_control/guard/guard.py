@@ -104,13 +104,13 @@ class Watched(NamedTuple):
 class Guard(Estimator[Watched]):
     """Around any estimator of the robot's pose.
 
-    Each measurement is tried: the estimator is a pure function, so that one which turns out to be
-    wild (its normalised innovation squared is beyond the 1 - 1e-6 quantile) is not taken. After an
+    Each measurement is tried, for the estimator is a pure function: one that turns out to be wild
+    (its normalised innovation squared is beyond the 1 - 1e-6 quantile) is not taken. After an
     alarm the estimate is the newest measurement with P = R, and a `delayed-ekf`, which copes with
     that, stands in until LOCATING measurements have come; then the estimator goes on from there.
 
-    Where the estimate lags behind it is the model that is wrong. A `learner`, if there is one, then
-    takes over for good: it learns of the robot what the estimator takes for known.
+    Where the estimate lags behind, the model is wrong. A `learner`, if there is one, then takes
+    over for good: it learns of the robot what the estimator takes for known.
     """
 
     estimator: Estimator[Any]
@@ -145,7 +145,7 @@ class Guard(Estimator[Watched]):
         """Measurement by measurement, in the order of sampling.
 
         `settled`: up to this tick the inputs are known. What was sampled later is used but proves
-        nothing: the robot may have done something else. None: all are known.
+        nothing: the robot may have done something else. None: all are known. Raises StampError.
         """
         if inputs:
             state = self._put_right(state, inputs)
@@ -163,12 +163,12 @@ class Guard(Estimator[Watched]):
         return self._active(state).ahead(state.state, inputs)
 
     def calibrated(self, state: Watched, robot: Ways) -> Ways:
-        """As whoever learns has it, also while it is given up."""
+        """As whoever learns has it, even while its own pose is given up."""
         learner, known = self._learned(state)
         return learner.calibrated(known, robot)
 
     def learned(self, state: Watched) -> tuple[Calibration, ...]:
-        """As whoever learns has it, also while it is given up."""
+        """As whoever learns has it, even while its own pose is given up."""
         learner, known = self._learned(state)
         return learner.learned(known)
 

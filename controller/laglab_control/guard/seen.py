@@ -1,4 +1,4 @@
-"""Which ticks' measurements came already: a repeat is to be known as one."""
+"""Of which ticks measurements have come: a repeat is to be known as one."""
 
 from typing import NamedTuple
 

@@ -26,11 +26,11 @@ LAWS: Mapping[str, str] = {
 """What there is by name, and what it does."""
 
 Options = Mapping[str, Any]
-"""Of a class, as its keyword arguments: nobody but the class knows their types."""
+"""The keyword arguments of a class: nobody but the class knows their types."""
 
 
 def tracking_law(path: Path, options: Options) -> TrackingLaw:
-    """Raises ConfigError for an option that it does not have, or that cannot be."""
+    """The tracking law along `path`. Raises ConfigError for an option that is none or cannot be."""
     gains = [field.name for field in fields(TrackingLaw) if field.name != "path"]
     if unknown := [name for name in options if name not in gains]:
         raise ConfigError(f"law.options: tracking has {', '.join(gains)}, not {unknown[0]}")
@@ -52,7 +52,7 @@ class BroughtLaw(Law):
     law: Any
 
     def drive(self, pose: Way[float], time: float, memory: object) -> Demand:
-        """Raises PluginFailedError: it fails, or answers no two finite numbers and a memory."""
+        """Raises PluginFailedError when it fails, or does not answer finite speeds and a memory."""
         answer = called(self.name, self.law, "drive", pose, time, memory)
         try:
             v, omega, memory = answer

@@ -16,7 +16,7 @@ LONGEST = 100_000
 
 
 class DelayMargin(NamedTuple):
-    """The largest n + m [ticks] with which each loop of the law still settles; -1: with none."""
+    """The largest n + m [ticks] with which each loop of the law still settles; -1: not even 0."""
 
     approach: int
     """Of (4), on the way to the goal."""
@@ -25,10 +25,10 @@ class DelayMargin(NamedTuple):
 
 
 def delay_margin(law: PolarLaw, sample_time: float) -> DelayMargin:
-    """Of the law's loops at the goal, without limits, every `sample_time` [s]. Raises ConfigError.
+    """Of the law's loops without limits, sampled every `sample_time` [s]. Raises ConfigError.
 
-    What lies beyond `approach` does not settle by (4). With a goal tolerance the robot may still
-    reach it, and then turns by the other loop.
+    With more delay than `approach` nothing settles by (4). A robot with a goal tolerance may still
+    get inside it, and then turns by the other loop.
     """
     if not (limit := Limit(0, above=True)).allows(sample_time):
         raise ConfigError(f"sample_time must be {limit}, not {sample_time!r}")
@@ -73,7 +73,7 @@ def _shrinking(gain: float, delay: int) -> float | None:
 
 
 def _longest_hold(gain: float) -> int:
-    """The same of z^(d+1) - z^d + gain, which is stable for gain < 2 sin(pi / (2 (2 d + 1)))."""
+    """The largest d with z^(d+1) - z^d + gain stable: gain < 2 sin(pi / (2 (2 d + 1)))."""
     if gain >= 2:
         return -1
     limit = (math.pi / (2 * math.asin(gain / 2)) - 1) / 2

@@ -25,7 +25,7 @@ class Reference(NamedTuple):
 
 
 class Path(Protocol):
-    """A pure function of time."""
+    """Where the robot is to be: a pure function of time."""
 
     def sampled(self, times: Vector) -> Matrix:
         """At `times` (n,) [s]: x, y, theta, v, omega in each row (n, 5)."""
@@ -42,7 +42,10 @@ class Path(Protocol):
 
 @dataclass(frozen=True)
 class Circle(Path):
-    """Counter-clockwise at constant `speed` [m/s], from the point on the right of the centre."""
+    """Counter-clockwise at constant `speed` [m/s], from the point on the right of the centre.
+
+    `centre` [m, m], `radius` [m]. Raises ConfigError, naming the field, for a value that cannot be.
+    """
 
     centre: tuple[float, float]
     radius: Positive
@@ -68,7 +71,10 @@ class Circle(Path):
 @dataclass(frozen=True)
 class Eight(Path):
     """A lying figure of eight, `width` [m] wide and half as high, from its middle to the upper
-    right; it is there, where the robot is fastest, that it has the `speed` [m/s]."""
+    right. `speed` [m/s] is that in the middle, where the robot is fastest; `centre` [m, m].
+
+    Raises ConfigError, naming the field, for a value that cannot be.
+    """
 
     centre: tuple[float, float]
     width: Positive
@@ -90,7 +96,7 @@ class Eight(Path):
         dx, dy = half * rate * np.cos(s), half * rate * np.cos(2 * s)
         ddx, ddy = -half * rate**2 * np.sin(s), -2 * half * rate**2 * np.sin(2 * s)
         theta = np.arctan2(dy, dx)
-        theta = np.where(theta > math.pi / 2, theta - math.tau, theta)  # it never looks up
+        theta = np.where(theta > math.pi / 2, theta - math.tau, theta)  # it never looks straight up
         squared = dx**2 + dy**2
         return np.stack((x, y, theta, np.sqrt(squared), (dx * ddy - dy * ddx) / squared), axis=1)
 
@@ -103,7 +109,8 @@ class Eight(Path):
 class Waypoints(Path):
     """Linear between rows x, y, theta, v, omega (n, 5) at growing `times` (n,) [s].
 
-    Before the first and after the last row the robot is to stand there. Raises ConfigError.
+    Before the first and after the last row the robot is to stand there. Raises ConfigError when
+    rows and times do not fit, when one is not finite, or when the times do not grow.
     """
 
     times: Vector

@@ -11,10 +11,10 @@ from laglab_control.limits import Positive, check, finite_pose
 
 @dataclass(frozen=True)
 class PolarLaw:
-    """Drives a pose [m, m, rad] to `goal`.
+    """Drives the robot to `goal` [m, m, rad]. Gains: `lambda_` and `gamma` [1/s], `h`.
 
     `goal_tolerance` [m] is the distance inside which the robot only turns; None: there is none, as
-    in the paper. Raises ConfigError, naming the field, when one cannot be.
+    in the paper. Raises ConfigError, naming the field, for a value that cannot be.
     """
 
     goal: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -46,7 +46,7 @@ class PolarLaw:
         return rho <= 2 * self.goal_tolerance if at_goal else rho < self.goal_tolerance
 
     def _polar(self, rho: float, alpha: float, phi: float) -> tuple[float, float]:
-        """(4), the same as (2)."""
+        """v and omega by (4), the same as (2)."""
         v = self.gamma * math.cos(alpha) * rho
         sinc = math.sin(alpha) / alpha if alpha else 1.0
         omega = self.lambda_ * alpha + self.gamma * math.cos(alpha) * sinc * (alpha + self.h * phi)

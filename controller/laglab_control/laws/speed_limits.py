@@ -10,12 +10,12 @@ from laglab_control.model import Matrix
 
 @dataclass(frozen=True)
 class SpeedLimits:
-    """None switches each of them off, as in the paper.
+    """The limits; None switches each of them off, as in the paper.
 
     `v_max` [m/s] and `omega_max` [rad/s] clamp the speeds; `caution` [m] is the standard deviation
-    of the estimated position above which the robot drives the more slowly; `accel_max` [m/s^2] and
+    of the estimated position above which the robot drives more slowly; `accel_max` [m/s^2] and
     `alpha_max` [rad/s^2] clamp how far a command may be from the last one. Raises ConfigError,
-    naming the field, when one cannot be.
+    naming the field, for a value that cannot be.
     """
 
     v_max: Positive | None = None
@@ -42,7 +42,7 @@ class SpeedLimits:
         return Demand(v, omega, asked.memory)
 
     def _share(self, P: Matrix) -> float:
-        """As slow as the claimed covariance makes advisable."""
+        """The share of the speeds that the claimed covariance makes advisable."""
         if self.caution is None:
             return 1.0
         variance = max(float(P[0, 0]), float(P[1, 1]))

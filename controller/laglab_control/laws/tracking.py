@@ -14,7 +14,7 @@ from laglab_control.limits import Positive, check
 class TrackingLaw:
     """Follows `path`. Gains: `k_x` [1/s], `k_y` [1/m^2], `k_theta` [1/m].
 
-    Raises ConfigError, naming the field, when one cannot be.
+    Raises ConfigError, naming the field, for a value that cannot be.
     """
 
     path: Path

@@ -46,5 +46,5 @@ def newest_first(log: Log[Item]) -> Iterator[Item]:
 
 
 def cut(log: Log[Item], length: int) -> tuple[Log[Item], list[Item]]:
-    """What it was when it had that length, and what came then, oldest first."""
+    """The log as it was at that length, and what came since, oldest first."""
     return Log(log.items, length), log.items[length : log.length]

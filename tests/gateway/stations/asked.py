@@ -36,8 +36,8 @@ class Asked:
         return [each for each in requests if each.name not in UNADDRESSED]
 
     def check_against_table(self, client: str) -> None:
-        """All that `client` asked stands there as seen with it, was answered as there, and all
-        that stands there as seen with it, but not just at times, was asked."""
+        """All that `client` asked stands there as seen with it, and was answered as there; all that
+        stands there as seen with it, and not only at times, was asked."""
         always = [row for row in table() if client in row.clients]
         rows = always + [row for row in table() if f"{client} at times" in row.clients]
         requests = self.requests

@@ -1,7 +1,7 @@
 """Every request of the table in docs/ground-stations.md gets the answer that stands there.
 
 pymavlink encodes the requests and reads the answers, in ardupilotmega, the dialect of most ground
-stations. Those that no registry has (QGroundControl, Mission Planner) are so replayed.
+stations. So those that no registry has (QGroundControl, Mission Planner) are replayed.
 """
 
 from collections import Counter

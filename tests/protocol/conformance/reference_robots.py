@@ -1,4 +1,4 @@
-"""Small robots that keep the rules, each with one fault if told so: in lock-step."""
+"""Small robots in lock-step that keep the rules, each with one fault if told so."""
 
 import time
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The robot in examples/, which was written by the page and with pymavlink alone, conforms."""
+"""The robot in examples/, which was written from the page, with pymavlink alone, conforms."""
 
 import ast
 import sys

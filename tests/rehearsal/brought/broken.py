@@ -20,7 +20,7 @@ class Right(Wide):
 
 
 class Impure(Right):
-    """Its answer hangs on how often it was asked."""
+    """Its answer depends on how often it was asked."""
 
     calls = itertools.count()
 
@@ -66,7 +66,7 @@ class Unordered(Right):
 
 
 class Repeating(Right):
-    """Uses what came twice twice: by a little less noise."""
+    """A measurement that comes twice moves its estimate once more."""
 
     def correct(self, state, measurements, inputs=()):
         right = super().correct(state, measurements, inputs)
@@ -90,7 +90,7 @@ class AnyStamp(Right):
 
 
 class NoOptimum(Right):
-    """Does without every second measurement; so it claims more, which is right."""
+    """Does without every second measurement, and claims a larger P, as it must."""
 
     def correct(self, state, measurements, inputs=()):
         some = [each for each in measurements if each.tick % 2 or not 0 <= each.tick <= state.tick]

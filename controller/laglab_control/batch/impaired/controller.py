@@ -31,7 +31,7 @@ IMPAIRED: Mapping[str, Callable[[Robots, Record, Belief], Estimator]] = {
     "popf-printed": partial(Popf, innovation_at_k=True),
     "delayed-ekf": DelayedEkf,
 }
-"""By name: those that there are for many robots on impaired links."""
+"""Those that there are for many robots on impaired links, by name."""
 
 
 class Answers(NamedTuple):

@@ -28,7 +28,7 @@ class Doubts:
 
     @cached_property
     def _believed(self) -> Whole:
-        """(ticks, robots) Inputs of which nothing was told yet."""
+        """(ticks, robots): how many inputs nothing was told of yet."""
         return np.arange(self.timetable.ticks)[:, None] - 1 - self.timetable.known
 
     @cached_property

@@ -37,7 +37,7 @@ class Estimator(Protocol):
 
     def go_on(self, tick: int, since: Whole) -> Sequence[Weighed]:
         """To this tick, with all that arrived there, and right again where the inputs that led to
-        ticks from `since` (robots,) on were others than believed; what was compared meanwhile."""
+        ticks from `since` (robots,) on were others than believed. Gives what was compared."""
         ...
 
     def estimate(self, tick: int) -> Estimate:

@@ -7,18 +7,18 @@ from laglab_control.batch.impaired.timetable import Whole
 class Factors:
     """Products of F_j = A_j (I - K_j), which take tick j to j + 1; later ones stand to the left.
 
-    The ticks are cut in blocks no longer than the least delay. Of each block the products from its
-    begin on and up to its end are kept; so every M* from tick s to t is a product of a few of them,
-    and a factor that changes changes only its own block's.
+    The ticks are cut into blocks no longer than the least delay. Of each block the products from
+    its beginning on and up to its end are kept; so every M* from tick s to t is a product of a few
+    of them, and a factor that changes changes only those of its own block.
     """
 
     def __init__(self, block: int, depth: int, robots: int) -> None:
         self._block = block
         self._factors = PastMatrices(depth, robots)
         self._from_begin = PastMatrices(depth, robots)
-        """F_{t-1} ... F_b, b the begin of the block of t."""
+        """F_{t-1} ... F_b, where the block of t begins at b."""
         self._to_end = PastMatrices(depth, robots)
-        """F_{e-1} ... F_s, e the end of the block of s."""
+        """F_{e-1} ... F_s, where the block of s ends at e."""
 
     def keep(self, j: int, robots: Whole, factors: Stack) -> None:
         """F_j of these robots, when all before it are right."""

@@ -33,7 +33,7 @@ BOUNDS = np.array(
         for count in range(SPREAD + 1)
     ]
 )
-"""Of so many innovations' NIS together."""
+"""What the NIS of so many innovations add up to at most."""
 
 
 class Watch:
@@ -43,7 +43,7 @@ class Watch:
         self.acts = np.zeros(robots, np.bool_)
         """The robots whose guard would have acted by now."""
         self._there = np.zeros(robots, np.int64)
-        """Innovations."""
+        """How many innovations."""
         self._sums = np.zeros((KEPT, 4, robots))
         """Of NIS, x, y, theta up to each."""
         self._statistic = np.zeros(robots)
@@ -84,7 +84,7 @@ class Watch:
         self.acts[robots] |= spread | (self._statistic[robots] > LAGGING)
 
     def _before(self, robots: Whole, there: Whole, count: Whole | int) -> Rows:
-        """So many innovations ago."""
+        """The sums as they were `count` innovations ago."""
         sums: Rows = self._sums[(there - count) % KEPT, :, robots].T
         return sums
 

@@ -51,7 +51,7 @@ class Past:
         return rows
 
     def put(self, ticks: Whole, robots: Whole, rows: Rows) -> None:
-        """The same to be kept from now on."""
+        """Keep these there from now on."""
         self._kept.put(self._where(ticks, robots), rows)
 
     def _where(self, ticks: Whole | int, robots: Whole) -> Whole:

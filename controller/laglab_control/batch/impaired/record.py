@@ -10,7 +10,7 @@ from laglab_control.motion import Way
 
 
 class Record:
-    """All that estimators are told."""
+    """All that the estimators are told."""
 
     def __init__(self, timetable: Timetable, sent: Sent) -> None:
         self.timetable = timetable
@@ -29,8 +29,8 @@ class Record:
         self._inputs.keep(tick - 1, self.sent.commands(made, self.everybody))
 
     def put_right(self, tick: int) -> Whole:
-        """What was believed wrongly; the first of each robot's ticks that was reached by an input
-        that was another one, the next tick where there is none."""
+        """Correct what was believed wrongly. Gives for each robot (robots,) the first tick that a
+        wrong input led to; the next tick where there was none."""
         robots, j, tokens = self.timetable.news[tick]
         since = np.full(self.timetable.robots, tick + 1)
         if len(j):

@@ -18,9 +18,9 @@ class Sent:
     """Of many robots: what each stretch of their commands leads to, at a cost that does not depend
     on its length.
 
-    What was not heard of yet is believed to come into force n ticks late; so what an estimate is
-    carried forward over, and what a command is made ahead of, are such stretches. Before tick 0 the
-    robots stand still.
+    What was not heard of yet is believed to come into force n ticks late; so an estimate is carried
+    to the present over such a stretch, and on to where a command comes into force over another.
+    Before tick 0 the robots stand still.
     """
 
     def __init__(self, robots: Robots, count: int, ticks: int, reach: int) -> None:
@@ -30,7 +30,7 @@ class Sent:
         self._led = Past(reach + 2, MOTION + 2, count)
         standing = robots.motion(Speeds(np.zeros(count), np.zeros(count)))
         for tick in range(-reach, 1):
-            # from where it does not depend on who is in this batch
+            # counted from -MEMORY, so that rounding is the same whoever is in this batch
             covariance = [(tick + MEMORY) * each for each in standing[3:]]
             self._led.keep(tick, [*np.zeros((3, count)), *covariance, *np.zeros((2, count))])
 

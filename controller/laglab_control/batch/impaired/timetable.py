@@ -72,7 +72,7 @@ class Course(NamedTuple):
 
     @property
     def reach(self) -> int:
-        """So many ticks back anything at all refers."""
+        """How many ticks back anything refers at most."""
         back = [np.arange(len(self.known)) - self.known, self.news.tick - self.news.j]
         back += [self.arrivals.tick - self.arrivals.s, self.missing.tick - self.missing.j]
         return int(self.delay.max()) + max(int(each.max(initial=0)) for each in back)
@@ -124,7 +124,7 @@ class Timetable:
         self.arrivals = self._arrivals([each.arrivals for each in courses])
         self.missing = self._missing([each.missing for each in courses])
         self.reach = max(each.reach for each in courses)
-        """So many ticks back anything at all refers."""
+        """How many ticks back anything refers at most."""
         self.least_delay = measurement_delay
         """No measurement takes fewer ticks."""
 
@@ -183,7 +183,7 @@ class Timetable:
 
 
 def _turns(robots: Whole) -> Whole:
-    """How many of the same stand before each, in sorted ones."""
+    """How many of the same robot stand before each, in a sorted row."""
     return np.arange(len(robots)) - np.searchsorted(robots, robots)
 
 
