@@ -122,8 +122,8 @@ class Waypoints(Path):
         if not (np.isfinite(self.times).all() and np.isfinite(self.rows).all()):
             raise ConfigError("a path must be of finite numbers")
         if not (np.diff(self.times) > 0).all():
-            late = int(np.argmin(np.diff(self.times) > 0)) + 1
-            raise ConfigError(f"the times of a path must grow, not {self.times[late]} at last")
+            last = self.times[int(np.argmin(np.diff(self.times) > 0)) + 1]
+            raise ConfigError(f"the times of a path must grow: {last} is not after the one before")
 
     def sampled(self, times: Vector) -> Matrix:
         """At `times` (n,)."""
