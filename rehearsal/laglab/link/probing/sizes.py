@@ -63,7 +63,7 @@ def _ones(count: int) -> tuple[int, ...]:
 
 
 def overload(url: str, sizes: Sizes, interval: float) -> str | None:
-    """In a line, that a serial port carries less than such frames are; None where it carries
+    """Says in a line that a serial port carries less than such frames need; None where it carries
     them, or is no serial port."""
     match = BAUD.search(url)
     fullest = max(sizes) * BITS_PER_BYTE / interval
