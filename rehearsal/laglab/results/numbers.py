@@ -10,9 +10,9 @@ from laglab_gateway import Trace
 
 AXES = ("x", "y", "theta")
 VARIANCES = ("p_xx", "p_yy", "p_tt")
-"""Of these, as tables call them."""
+"""The variances of these, as tables call them."""
 COVARIANCE = ("p_xx", "p_xy", "p_xt", "p_yy", "p_yt", "p_tt")
-"""Its upper triangle."""
+"""The upper triangle of their covariance."""
 DISTANCE_BOUND = 0.06
 HEADING_BOUND = 0.05
 LAST_SECOND = 1.0
@@ -98,7 +98,7 @@ def last_second(time: Array) -> NDArray[np.bool_]:
 
 
 def has_converged(trace: Trace, goal: Goal) -> bool:
-    """At the goal at every tick of the last second.
+    """Whether it was at the goal at every tick of the last second.
 
     Where the pose is measured, in the second's mean: the sensor's noise does not move the robot.
     """

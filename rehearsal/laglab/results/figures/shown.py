@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 MINUTES, HOURS = 600.0, 3 * 3600.0
-"""[s] Runs that last longer are told in these."""
+"""[s] Runs that last longer are told in minutes, or in hours."""
 
 
 class Clock(NamedTuple):
