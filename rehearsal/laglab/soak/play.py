@@ -60,7 +60,7 @@ def play(turn: Turn, folder: Path) -> Played:
 
 
 def _rounded_up(mark: str) -> list[int]:
-    """Whoever still runs that came of the turn; they do so no longer."""
+    """The processes of the turn that still ran; they are killed."""
     running = marked(mark)
     for number in running:
         with suppress(ProcessLookupError):
@@ -112,7 +112,7 @@ class _Stage:
 
     @property
     def datagrams(self) -> int:
-        """That strangers have sent."""
+        """How many strangers have sent."""
         return self._speaking.sent if self._speaking else 0
 
     def clear(self) -> None:

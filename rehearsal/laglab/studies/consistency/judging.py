@@ -106,7 +106,7 @@ class Verdict(NamedTuple):
 
 @cache
 def chi_square_bounds(seeds: int) -> tuple[float, float]:
-    """Between which the average of NEES or NIS over the seeds lies with 95 % probability."""
+    """Between which an average of NEES or NIS over `seeds` lies at 95 %; NaN without seeds."""
     if seeds == 0:
         return np.nan, np.nan
     degrees = DEGREES * seeds

@@ -66,7 +66,7 @@ class Folder:
         return study_of(text, str(self._study), self.path / f"{self.path.resolve().name}.toml")
 
     def file(self, cell: Cell) -> Path:
-        """Where it is, if it is there."""
+        """Where it is, or would be."""
         return self.cells / f"{cell.key}.parquet"
 
     def has(self, cell: Cell) -> bool:
