@@ -43,27 +43,27 @@ def robot_pose(trace: Trace) -> Array:
 
 
 def measurements(trace: Trace) -> Array:
-    """z_k as sampled, shape (ticks + 1, 3)."""
+    """z_k as sampled, shape (ticks + 1, 3) [m, m, rad]."""
     return np.stack([trace[f"{axis}_meas"] for axis in AXES], axis=1)
 
 
 def loop_estimates(trace: Trace) -> Array:
-    """x̂_k of the estimator in the loop, shape (ticks + 1, 3)."""
+    """x̂_k of the estimator in the loop, shape (ticks + 1, 3) [m, m, rad]."""
     return np.stack([trace[f"{axis}_est"] for axis in AXES], axis=1)
 
 
 def shadow_estimates(trace: Trace, name: str) -> Array:
-    """x̂_k of an estimator that shadowed the loop, shape (ticks + 1, 3)."""
+    """x̂_k of an estimator that shadowed the loop, shape (ticks + 1, 3) [m, m, rad]."""
     return np.stack([trace[f"{axis}_{name}"] for axis in AXES], axis=1)
 
 
 def deviation(trace: Trace, estimates: Array) -> Array:
-    """Estimate less pose, shape (ticks + 1, 3), heading wrapped."""
+    """Estimate less pose, shape (ticks + 1, 3) [m, m, rad], heading wrapped."""
     return pose_difference(estimates, robot_pose(trace))
 
 
 def pose_difference(poses: Array, others: Array) -> Array:
-    """The one less the other, shape (..., 3), heading wrapped."""
+    """Poses less others, shape (..., 3) [m, m, rad], heading wrapped."""
     with np.errstate(invalid="ignore"):
         difference = poses - others
     difference[..., 2] = wrapped(difference[..., 2])

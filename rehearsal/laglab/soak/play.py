@@ -24,9 +24,9 @@ LOOK_EVERY = 0.05
 LAST_WORDS = 60.0
 """[s] Besides the silence: results, shadows and a figure, on a machine that is busy."""
 UNMET = 3.0
-"""[s] Who has met nobody waits for ever; when the other one is over, we wait only so long."""
+"""[s] A side that met nobody waits for ever; once the other one is over it gets this long."""
 LONGEST = 300.0
-"""[s] No turn takes so long."""
+"""[s] A turn that takes longer is broken off."""
 BAUD = 57600
 SCENARIO, KEY, PORT, WATCH = "scenario.toml", "key", "port", "watch"
 

@@ -143,7 +143,7 @@ def _done(call: Call) -> "Iterator[object]":
 def as_done(
     executor: Executor, function: Callable[[Job], Answer], jobs: Iterable[Job], ahead: int
 ) -> "Iterator[tuple[Job, Future[Answer]]]":
-    """The jobs, in the order in which they are done; at most so many are underway at once."""
+    """The jobs, in the order in which they are done; at most `ahead` are underway at once."""
     done: Queue[tuple[Job, Future[Answer]]] = Queue()
     underway = 0
     for job in jobs:

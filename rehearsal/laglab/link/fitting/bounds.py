@@ -11,7 +11,7 @@ from laglab.link.measured import Flow, MeasuredLink
 ROUNDING = 1e-6
 """[ticks] What comes this little after a tick counts as on it: a clock tells no finer."""
 LATE = (0.1, 0.05, 0.02, 0.01, 0.005, 0.001, 0.0)
-"""Shares of the frames that came."""
+"""Shares of late frames, of those that came, for which bounds are worth a thought."""
 
 
 class Choice(NamedTuple):

@@ -53,7 +53,7 @@ def real_sizes(sender: Sender) -> Sizes:
 
 
 def filler_for(sender: Sender, size: int) -> tuple[int, ...]:
-    """What makes a probe of this sender so many bytes long."""
+    """The filler that makes a probe of this sender `size` [byte] long, as nearly as it can."""
     shortest = len(sender.sibling().frame(Probe(0, NEVER, 0, 0, 0, NONE, _ones(0))))
     return _ones(min(max(size - shortest, 0), PROBE_FILLER))
 

@@ -77,7 +77,7 @@ def draw_headings(axes: Axes, poses: Array, color: str = BLACK) -> None:
 
 
 def along(poses: Array, count: int) -> NDArray[np.intp]:
-    """The rows of so many poses, at most, equally far apart along the path."""
+    """The rows of at most `count` poses, equally far apart along the path."""
     steps = np.hypot(*np.diff(poses[:, :2], axis=0).T)
     steps += TURN * np.abs(np.diff(poses[:, 2]))
     way = np.concatenate([[0.0], np.cumsum(steps)])

@@ -117,7 +117,7 @@ def _plot(
 
 
 def heading(text: str) -> Title:
-    """Of a plot."""
+    """The title of a plot."""
     return Title(text=text, text_font_size="13px", text_font_style="normal", text_color=BLACK)
 
 

@@ -65,7 +65,7 @@ class Average(NamedTuple):
 
     @property
     def inside(self) -> float:
-        """The share of the ticks at which the average is within the bounds for so many seeds."""
+        """The share of the ticks at which the average is within the bounds for its seeds."""
         low, high = np.array([chi_square_bounds(int(n)) for n in self.seeds]).T
         within = (low <= self.values) & (self.values <= high)
         return float(mean_of_known(np.where(self.seeds == 0, np.nan, within)))

@@ -24,7 +24,7 @@ from laglab.studies.sweep.study import Study
 STUDY_FILE = "study.toml"
 CELLS = "cells"
 ABANDONED = 3600.0
-"""[s] What has been half written for so long, nobody will finish."""
+"""[s] A file half written longer ago than this nobody will finish."""
 
 
 @dataclass(frozen=True)

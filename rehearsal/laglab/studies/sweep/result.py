@@ -76,7 +76,7 @@ class StudyResult:
         return pa.concat_tables(tables)
 
     def _check(self, columns: list[str]) -> None:
-        """Against any of the tables."""
+        """Raises StudyError: there is no such column in the first table, which is like all."""
         some = next(self.tables(), None)
         known = [] if some is None else some.column_names
         for name in columns:
