@@ -13,7 +13,7 @@ import msgspec
 from laglab.errors import PlaceError, ResultsError
 
 BESIDE = ".*.new"
-"""What is there of a file while it is being written; stays when we are killed at that."""
+"""Pattern of the names of files that are being written; they stay when we are killed meanwhile."""
 
 
 def folder_place(named: str, path: Path) -> Path:
@@ -81,7 +81,7 @@ def write_whole(path: Path, content: str | bytes, lasting: bool = False) -> None
 
 
 def json_of(value: object) -> str:
-    """For people too: indented."""
+    """As JSON, indented, for people to read too."""
     return msgspec.json.format(msgspec.json.encode(value), indent=2).decode() + "\n"
 
 

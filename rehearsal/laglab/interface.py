@@ -38,7 +38,7 @@ def run(
         out: the folder for the results, which must not hold another run's; None keeps them in
             memory.
         progress: show it on standard error.
-        controller: what computes the station's answers, of a run in memory.
+        controller: what computes the station's answers, for a run in memory.
 
     Raises:
         ScenarioError: there is no such scenario, or it cannot be.

@@ -10,7 +10,7 @@ INTERRUPTED = 130
 
 
 def on_interrupt(handler: Callable[..., object]) -> None:
-    """Call the handler from now on; what whoever started us had us ignore stays ignored."""
+    """Call the handler from now on; a signal that we were started to ignore stays ignored."""
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):
         number = getattr(signal, name, None)
         if number and signal.getsignal(number) is not signal.SIG_IGN:

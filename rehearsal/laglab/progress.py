@@ -30,7 +30,7 @@ PACE_WINDOW = 300.0
 """[s] A study's cells may take minutes each."""
 
 REFRESHED = 0.1
-"""[s] To show something takes a while, in which whoever works does not."""
+"""[s] Nothing is shown sooner after the last: to show it takes time from the work."""
 
 ROOMY, NARROW = 72, 44
 """[columns] Narrower terminals are told less."""
@@ -53,7 +53,7 @@ def progress_of(scenario: Scenario, shown: bool = True) -> Iterator[Told]:
 
 
 def at_a_glance(scenario: Scenario, tick: int, glance: Glance, width: int) -> str:
-    """In one line of so many columns: what matters less is left out first."""
+    """In one line of at most `width` columns: what matters less is left out first."""
     of = "" if scenario.last_tick is None else f" of {scenario.duration:g}"
     delays = ", ".join("?" if each is None else str(each) for each in glance.delays)
     parts = [
@@ -138,7 +138,7 @@ def status() -> Iterator[Callable[[str], None]]:
 
 
 class Rate(ProgressColumn):
-    """How much a second."""
+    """How much is done per second."""
 
     def __init__(self, unit: str) -> None:
         super().__init__()
@@ -155,7 +155,7 @@ class Rate(ProgressColumn):
 
 
 class ToGo(TimeRemainingColumn):
-    """How long it will take still."""
+    """How long it will still take."""
 
     def render(self, task: Task) -> Text:
         left = super().render(task)
@@ -163,7 +163,7 @@ class ToGo(TimeRemainingColumn):
 
 
 def _bar(unit: str, shown: bool = True) -> Progress:
-    """So many done of so many to do, if that is known; how fast, and how long it takes still."""
+    """How much is done, of how much if that is known; how fast, and how long it will still take."""
     name, done = TextColumn("{task.description}", markup=False), MofNCompleteColumn()
     share = TaskProgressColumn(text_format_no_percentage="")
     width = terminal(stderr=True).width

@@ -16,7 +16,7 @@ PACKAGES = (
     "laglab_protocol",
     "laglab_station",
 )
-"""Those that a run goes through."""
+"""The packages that a run goes through."""
 
 
 @cache

@@ -15,7 +15,7 @@ from laglab_protocol.messages.loop import Measurement
 from laglab_protocol.signing.signature import Signer, Verifier
 
 FIELDS = (1.5, -2.0, 3.125, 0.5, -1.7, 1_234_567, 1_234_537)
-"""Of a LAGLAB_MEASUREMENT: a frame of 60 bytes."""
+"""The fields of a LAGLAB_MEASUREMENT, whose frame has 60 bytes."""
 BLOCK = 500
 KEY = bytes(range(32))
 NAMES = ("ours", "pymavlink", "mavgen's C")

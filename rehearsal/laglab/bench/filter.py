@@ -46,14 +46,14 @@ class Drive(NamedTuple):
 
 
 Ticks = Callable[[Drive, int], float]
-"""Goes through the drive with delay m; the seconds that a tick took once measurements came."""
+"""Goes through the drive with delay m; gives the seconds a tick took once measurements came."""
 
 DELAYS, CONTROLLER_DELAYS = (4, 40, 400), (2, 20, 200)
 
 
 def bench(ticks: int) -> Bench:
-    """Each filter over the same drive at m = 4, 40 and 400; the controllers at half of that, for
-    with n = m a measurement is as old when its command comes into force."""
+    """Each filter over the same drive at m = 4, 40 and 400; the controllers at half of that:
+    with n = m a measurement is then as old when its command comes into force."""
     alone = filters()
     yardstick = FILTERPY if FILTERPY in alone else OURS[0]
     contests = [

@@ -14,7 +14,7 @@ import laglab
 from laglab.bench.result import SCHEMA, Figure, Report, Result, Timing, this_machine
 
 Turn = Callable[[], float]
-"""Does its work once; the seconds that a piece of it took."""
+"""Does its work once; gives the seconds that a piece of it took."""
 Progress = Callable[[str], None]
 
 
@@ -59,7 +59,7 @@ class Bench:
 
 
 def timed(work: Callable[[], object], pieces: int) -> Turn:
-    """The turn of a contender that does so many pieces of work in a go."""
+    """The turn of a contender whose `work` does that many `pieces` in one go."""
 
     def turn() -> float:
         began = perf_counter()

@@ -21,7 +21,7 @@ CROWD = 100
 
 
 def bench(seconds: float) -> Bench:
-    """Runs of so many seconds over UDP, each turn the 99th percentile of its ticks' lateness."""
+    """Runs of `seconds` over UDP; a turn gives the 99th percentile of its ticks' lateness."""
     ways: dict[str, Turn] = {
         NO_PAGE: lambda: _late(seconds),
         "a page": lambda: _late_with_page(seconds, 0, 0),
@@ -33,8 +33,8 @@ def bench(seconds: float) -> Bench:
 
 
 def _in_the_median(results: Sequence[Result], _: Progress) -> list[Figure]:
-    """Of five ticks in five hundred chance decides more than of a piece of work: what the fastest
-    turns say of it is not to be relied on."""
+    """The 99th percentile rests on five ticks in five hundred, where chance decides: the fastest
+    turn is not to be relied on."""
     without, *others = results[0].timings
     return [
         Figure(f"{each.name} to {without.name}, in the median", each.median / without.median, "×")
@@ -59,7 +59,7 @@ def _late_with_page(seconds: float, readers: int, stalled: int) -> float:
 
 
 def _reader(address: str) -> socket.socket:
-    """One that has asked for all that comes."""
+    """A reader that has asked for all that comes."""
     url = urlsplit(address)
     reader = socket.create_connection((LOOPBACK, url.port or 0))
     reader.sendall(f"GET /events?{url.query} HTTP/1.1\r\nHost: {url.netloc}\r\n\r\n".encode())

@@ -18,8 +18,8 @@ ECHO, BY_HAND, OURS = "bare echo", "by hand", "laglab"
 
 
 def bench(ticks: int, realtime: float, links: Sequence[Link] = LINKS) -> Bench:
-    """Runs of so many ticks, with a filter in the loop and with none; at the end, for `realtime`
-    seconds, one that keeps to the clock."""
+    """Runs of `ticks` ticks, with a filter in the loop and with none; at the end, one that keeps to
+    the clock for `realtime` seconds."""
     cases = {f"{link}, {name}": _ways(link, name, ticks) for link in links for name in ESTIMATORS}
     n, m, *_ = loop_of(loop_scenario(ESTIMATORS[0], ticks))
     contest = Contest(f"the loop, n = {n}, m = {m}", TICK, OURS, cases)

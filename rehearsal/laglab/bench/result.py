@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 SCHEMA = 1
-"""Of the JSON; another number, another meaning of a field."""
+"""The version of the JSON: another one when a field means something else."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Result:
     timings: tuple[Timing, ...]
 
     def fastest(self, case: str, name: str) -> float:
-        """That contender's. Raises KeyError when it was not in it."""
+        """The contender's, in `unit`. Raises KeyError when it was not in that case."""
         return {(each.case, each.name): each.fastest for each in self.timings}[case, name]
 
 
@@ -47,7 +47,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Machine:
-    """Where it was measured, and how busy that was before."""
+    """The machine on which it was measured, and how busy that was before."""
 
     cpus: int
     python: str

@@ -23,7 +23,7 @@ KINDS = ("delayed-ekf", "popf")
 FEW = 2
 """Robots that a turn runs one by one."""
 SHARES = 4
-"""Of a turn that is shared out among processes."""
+"""Into how many a turn is cut that processes share."""
 DELAYS = ((10, 20), (100, 20), (10, 200))
 """n and m: the first is the paper's, the others tell how the cost grows."""
 
@@ -95,7 +95,7 @@ def _shared_out(processes: int, robots: int, ticks: int, stack: ExitStack) -> Tu
 
 
 def at_once(share: Share) -> None:
-    """In a process."""
+    """One share, in a process of its own."""
     _at_once(_scenarios(KINDS[0], DELAYS[0], *share))
 
 

@@ -52,6 +52,6 @@ def _how(report: Report) -> str:
 
 
 def significant(value: float) -> str:
-    """With three digits that count, or all that stand before the point."""
+    """With three significant digits, or all that stand before the point."""
     digits = 2 - math.floor(math.log10(abs(value))) if value else 0
     return f"{value:.{max(digits, 0)}f}"

@@ -1,4 +1,4 @@
-"""Whole runs as the benches need them: all that these know of scenarios and of how they are run."""
+"""Whole runs as the benches need them: all that a bench knows of scenarios and of running them."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -42,7 +42,7 @@ def loop_scenario(estimator: str, ticks: int) -> Scenario:
 
 
 def loop_of(scenario: Scenario) -> Loop:
-    """The same loop."""
+    """The scenario's loop, for who builds it by hand."""
     return Loop(
         scenario.link.command_delay,
         scenario.link.measurement_delay,

@@ -39,7 +39,7 @@ class Checked(NamedTuple):
 
 
 def checked_apart(order: CheckOrder, patience: float = PATIENCE) -> Checked:
-    """A row for each check; the last one says so if it does not come to its end.
+    """A row for each check; where they do not come to their end, the last row says so.
 
     Raises GaveUpError: there is no such thing; NoAnswerError: its module does not come back.
     """

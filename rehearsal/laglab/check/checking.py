@@ -35,7 +35,7 @@ def checked(kind: Kind, name: str, options: Options | None = None) -> Iterator[F
 
 
 def _admits(kind: Kind, name: str) -> Mapping[str, str]:
-    """What whoever made it says does not hold, by check, and why."""
+    """The checks that do not hold by the word of its maker, each with why."""
     if kind == "estimator" and name in ESTIMATORS:
         return ESTIMATORS[name].admits
     if name in SHIPPED[kind]:

@@ -28,13 +28,13 @@ MODEL = RobotModel()
 TICKS = 120
 DELAYS = (0, 1, 7, 20, 60)
 SEEDS, LATE = 20, 10
-"""Of the runs over which NEES is averaged, and the delay of their measurements [ticks]."""
+"""The runs over which NEES is averaged: how many, and their measurements' delay [ticks]."""
 IMPROBABLE = 1e-3
-"""That a filter which is right about itself is outside the bounds."""
+"""The probability that a filter which is right about itself is outside the bounds."""
 EXACT = 5e-3
-"""[m, rad] Without noise, an estimate is as near as that."""
+"""[m, rad] Without noise, an estimate is off by less."""
 AGREES = 0.1
-"""Of the deviation claimed: so near an optimum is to another."""
+"""[standard deviations claimed] Two optimal filters differ by less."""
 
 
 class Subject(NamedTuple):

@@ -58,7 +58,7 @@ def _found(name: str, check: Check[T], make: Callable[[], T]) -> Finding:
 
 
 def all_hold(found: Iterable[Finding]) -> bool:
-    """Whether nothing is wrong that was not admitted."""
+    """Whether whatever does not hold was admitted."""
     return all(finding.held != "no" for finding in found)
 
 

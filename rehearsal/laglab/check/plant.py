@@ -15,13 +15,13 @@ START = (0.4, -0.3, 0.6)
 SEED = 5
 TICKS = 200
 SPEEDS = (0.5, 0.3)
-"""[m/s, rad/s] Driven for as long: no robot need turn where it stands."""
+"""[m/s, rad/s] Driven for TICKS; both at once, as not every robot can turn on the spot."""
 SHARE = 0.25
-"""Of the way that a robot may lose to lags and slip."""
+"""The share of its way that a robot may lose to lags and slip."""
 
 
 class Subject(NamedTuple):
-    """As many as a check needs, each at the start."""
+    """Makes as many plants as a check needs, each at the start."""
 
     make: Callable[[], Plant]
 
@@ -59,7 +59,7 @@ def deterministic(subject: Subject) -> str:
 
 
 def still(subject: Subject) -> str:
-    """To read changes nothing."""
+    """Reading changes nothing."""
     plant = subject.make()
     readings = [_read(plant) for _ in range(5)]
     same = all(np.array_equal(readings[0], each) for each in readings)

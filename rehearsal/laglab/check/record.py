@@ -9,7 +9,7 @@ from laglab_control import Measured, RobotModel
 
 Array = NDArray[np.float64]
 P_0 = 1e-3
-"""[m^2, m^2, rad^2] Of what is told of the start."""
+"""[m², m², rad²] The variance of the start that an estimator is told."""
 
 
 class Record(NamedTuple):
@@ -22,7 +22,7 @@ class Record(NamedTuple):
     measurements: Array
     """(N+1, 3)."""
     x: Array
-    """What is told of the start (3,)."""
+    """(3,): the start that an estimator is told."""
 
     @property
     def P(self) -> Array:
@@ -30,7 +30,7 @@ class Record(NamedTuple):
         return P_0 * np.eye(3)
 
     def measured(self, tick: int) -> Measured:
-        """What was sampled then."""
+        """The measurement sampled at that tick."""
         return Measured(tick, self.measurements[tick].copy())
 
 

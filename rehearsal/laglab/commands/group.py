@@ -16,7 +16,7 @@ def group(
     callback: Callable[..., None] = alone,
     completion: bool = False,
 ) -> typer.Typer:
-    """An empty one, with what it is for; `completion`: shells can be taught to complete it."""
+    """An empty group; `help` says what it is for; `completion`: shells can learn to complete it."""
     return typer.Typer(
         help=help,
         callback=callback,

@@ -87,7 +87,7 @@ OF_SEVERAL_KEYS: dict[str, Any] = {
 
 
 def _overrides(options: dict[str, Any]) -> dict[str, object]:
-    """What beats the file; takes the options out that say it."""
+    """What beats the file; takes the options that say so out of `options`."""
     own = {key: options.pop(_parameter(key)) for key in OWN}
     own = {key: value for key, value in own.items() if value is not None}
     if names := options.pop("estimator"):

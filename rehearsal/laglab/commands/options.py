@@ -1,4 +1,4 @@
-"""What several commands take: one word and one help text for it."""
+"""What several commands take: with one name and one help text."""
 
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -59,7 +59,7 @@ def chosen(option: str, named: Sequence[str] | None, known: Iterable[str]) -> li
 
 
 def checked(option: str, check: Callable[[str], str], name: str) -> str:
-    """The name, of which the check raises no ValueError. Raises ScenarioError."""
+    """The name as `check` gives it. Raises ScenarioError where `check` raises ValueError."""
     try:
         return check(name)
     except ValueError as error:

@@ -23,15 +23,15 @@ class Format(NamedTuple):
     """How a run is written in it."""
 
     ending: str
-    """Behind the name of the run's folder."""
+    """What is added to the name of the run's folder."""
     files: tuple[str, ...]
-    """That it leaves in a folder; none: it is one file."""
+    """Those that it leaves in a folder; none: it is one file."""
     need: Need | None
     write: Callable[[Run, Path], None]
 
 
 def export(run: Run, name: FormatName, out: Path | None = None, force: bool = False) -> Path:
-    """Write the run to `out`, or here under the name of its folder: where it is.
+    """Write the run to `out`, or here under the name of its folder; says where that is.
 
     What is there already is replaced only with `force`.
 

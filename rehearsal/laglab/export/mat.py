@@ -12,11 +12,11 @@ from laglab.results.columns import joined
 from laglab.results.run import Run
 
 HEADER = b"MATLAB 5.0 MAT-file, written by laglab".ljust(116)
-"""Where SciPy puts the time of writing: the same run is to give the same file."""
+"""SciPy would put the time of writing here; the same run is to give the same file."""
 
 
 def write_mat(run: Run, file: BinaryIO) -> None:
-    """A struct a table, with a field a column; `units` has their units, `scenario` is its file.
+    """A struct for each table, a field for each column; `units` has their units, `scenario` TOML.
 
     All of it is in memory at once.
     """
@@ -37,7 +37,7 @@ def _struct(table: Table) -> dict[str, object]:
 
 
 def _cells(column: NDArray[np.generic]) -> NDArray[np.generic]:
-    """Texts of any length are a cell array there."""
+    """In MATLAB, texts of different lengths are a cell array."""
     return column.astype(object) if column.dtype.kind == "U" else column
 
 

@@ -13,7 +13,7 @@ from laglab.results.run import Run
 from laglab_gateway import ARRIVALS_FILE, CLAIMS_FILE, LINK_FILE, TIMING_FILE, Trace
 
 LONGEST = 2**31 - 1
-"""Seconds, of which ROS's stamps have room for 68 years; ticks, and what else is counted."""
+"""The largest number, of seconds (68 years fit into ROS's stamps), ticks or whatever is counted."""
 
 Keys = NDArray[np.float64]
 
@@ -55,7 +55,7 @@ class Tables(NamedTuple):
 
 
 def tables(run: Run) -> Tables:
-    """To be read once."""
+    """The run's three tables, each to be read once."""
     columns = tick_columns(run.scenario.estimator.compare)
     source = str(run.directory or run.scenario.name)
     return Tables(

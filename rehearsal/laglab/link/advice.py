@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from laglab.link.fitting import Fit
 
 FAR = 0.1
-"""Kolmogorov and Smirnov's distance of a fit that is none."""
+"""The Kolmogorov-Smirnov distance beyond which a fit is a poor one."""
 
 
 def suggestions(fit: Fit) -> Iterator[str]:

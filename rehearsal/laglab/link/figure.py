@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 HEIGHT = 3.4
 """[inch]"""
 MANY = 2000
-"""Dots: so many are a picture in a file of shapes too."""
+"""More dots than that are drawn as pixels even in a vector file."""
 
 
 def draw_fit(fit: Fit, width: Width = "two") -> Figure:

@@ -10,11 +10,11 @@ from tomlkit.items import InlineTable, Item, Table
 from laglab_gateway import IDEAL, Impairments
 
 DIGITS = 6
-"""Of a number."""
+"""Significant ones, of a number."""
 
 
 class Bounds(NamedTuple):
-    """So late a message is played out [ticks]: command, measurement."""
+    """How late messages are played out [ticks]: commands, measurements."""
 
     command: int
     measurement: int

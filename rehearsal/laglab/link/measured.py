@@ -24,7 +24,7 @@ Flags = NDArray[np.bool_]
 
 DELIVERED, LOST = "delivered", "lost"
 CAME = (DELIVERED, "late")
-"""By the link: what was too late to be played out came all the same."""
+"""Fates of frames that came: one that is too late for play-out came all the same."""
 DIRECTIONS: tuple[Direction, Direction] = ("command", "measurement")
 
 
@@ -67,13 +67,13 @@ class MeasuredLink:
 
 
 def bursts(lost: Flags) -> list[int]:
-    """How many frames were lost, each time that some were lost one after the other."""
+    """The lengths of the losses: how many frames were lost one after the other, each time."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], lost, [False]])))
     return [int(length) for length in edges[1::2] - edges[::2]]
 
 
 def problem_of(measured: MeasuredLink) -> str | None:
-    """Why no link.csv that can be read again holds it; None where one does."""
+    """Why no link.csv could hold it so that it can be read again; None where one can."""
     if not measured.interval > 0:
         return "its measurements have no times that go on from one to the next"
     for direction, flow in measured.flows:

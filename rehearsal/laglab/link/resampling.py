@@ -40,7 +40,7 @@ def resampled(measured: MeasuredLink, interval: float) -> MeasuredLink:
 
 
 def ticks_in(measured: MeasuredLink, interval: float) -> float:
-    """How many it is resampled to, of the longer direction."""
+    """How many ticks it is resampled to, by the longer direction."""
     spans = [np.ptp(flow.sent) for _, flow in measured.flows if len(flow.sent)]
     return float(max(spans, default=0.0) + measured.interval) / interval
 

@@ -84,7 +84,7 @@ def fit_table(fit: Fit) -> Table:
 
 
 def choices_table(fit: Fit, margin: DelayMargin | None) -> Table:
-    """What each pair of bounds costs; without a margin, of a law of which none is known."""
+    """What each pair of bounds costs; `margin` is None for a law of which none is known."""
     table = plain_table(title="Play-out: later bounds, fewer frames late, longer delays")
     for heading in ("", "n", "m", "late [%]", "lost or late [%]", "n + m", "[ms]", "to the margin"):
         table.add_column(Text(heading), justify="right")

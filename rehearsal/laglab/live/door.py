@@ -67,8 +67,8 @@ class Door(NamedTuple):
         """Why not; None: it is allowed.
 
         To look needs no token on loopback, unless one is given; to do something always needs it,
-        and a page of our own that asks. A name that is not ours as host is that of a stranger's
-        page, which had its name resolved to our address.
+        and a page of our own that asks. A host that is not one of our names is a
+        stranger's, whose page had that name resolved to our address.
         """
         if not self._is_ours(request.host):
             return HTTPStatus.FORBIDDEN

@@ -19,7 +19,7 @@ from laglab_gateway import (
 PERIOD = 0.05
 """[s] between two datagrams."""
 MOST_TICKS, MOST_OTHERS = 100, 300
-"""Rows of a datagram."""
+"""The most rows in a datagram: of the trace, and of each other table."""
 
 STATUSTEXT = (253).to_bytes(3, "little")
 
@@ -32,7 +32,7 @@ class Controls(NamedTuple):
     stop: Callable[[], None]
     """Stop the robot for good."""
     stopped: Callable[[], bool]
-    """Whether it is."""
+    """Whether the robot is stopped."""
 
 
 class Feed(Recorder):

@@ -20,7 +20,7 @@ class LivePage:
 
     def __init__(self, place: Place, token: str, line: str) -> None:
         self.line = line
-        """What the loop's feed needs to know."""
+        """By which the loop's feed calls the page, as text."""
         self.address = f"http://{_in_url(place.host)}:{place.port}/?token={token}"
         self._place = place
 
@@ -36,7 +36,7 @@ class LivePage:
         )
 
     def over(self, verdict: str) -> None:
-        """Tell whoever looks."""
+        """Tell whoever looks how the run ended."""
         caller = Caller(Line.read(self.line))
         caller.say(Over(verdict))
         caller.close()
@@ -46,7 +46,7 @@ class LivePage:
 def live_page(
     scenario: Scenario, place: Place, origin: str, station_alone: bool = False
 ) -> Iterator[LivePage]:
-    """Open to whoever has its address; gone at the end.
+    """A page, open to whoever has its address; gone at the end.
 
     Raises LiveError when it cannot be at that place.
     """

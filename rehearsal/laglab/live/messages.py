@@ -27,7 +27,7 @@ class Rows(Struct, tag="rows"):
     link: list[LinkRow] = []
     timing: list[TimingRow] = []
     frames: list[bytes] = []
-    """In which something is said in words; of a station alone, which has no rows, all frames."""
+    """Those that say something in words; of a station alone, which has no rows, all."""
     stopped: bool = False
     """Whether the robot was stopped for good."""
 
@@ -39,7 +39,7 @@ class Over(Struct, tag="over"):
 
 
 class Given(Struct, tag="given"):
-    """What somebody at the page wants of the loop; said again until it is so."""
+    """What somebody at the page wants of the loop; repeated until it is done."""
 
     order: Order
 

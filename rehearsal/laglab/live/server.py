@@ -146,7 +146,7 @@ class _Server(asyncio.DatagramProtocol):
             writer.close()
 
     def _answer(self, asked: bytes, writer: asyncio.StreamWriter) -> bool:
-        """True when it is told all that comes, too."""
+        """Answer a request; True when its reader is to be told all that comes, too."""
         request = parse(asked)
         say = writer.write
         if request is None:

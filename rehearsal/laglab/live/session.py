@@ -44,7 +44,7 @@ class Session(Recorder):
         ).start()
 
     def hear(self, frames: Iterable[bytes]) -> Rows:
-        """These, too; what has become of those before them."""
+        """Take these frames; gives the rows made of earlier ones by now."""
         for frame in frames:
             self._frames.put(frame)
         return Rows(_all(self._trace), _all(self._arrivals), _all(self._told))

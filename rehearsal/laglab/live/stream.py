@@ -25,11 +25,11 @@ from laglab.scenario import Scenario
 from laglab_gateway import ArrivalRow, ClaimRow, LinkRow, TimingRow, trace_of
 
 MOST_ROWS = 3_000
-"""Of each table; when there are more, every other one goes."""
+"""Rows of each table; when there are more, every other one goes."""
 MOST_TEXTS = 200
 DIGITS = 6
 LANE_OF = {"stop": STOPPED, "estimate is wrong": ALARM}
-"""Where it is marked when one of the sides says so."""
+"""The lane that is marked when one of the sides says these words."""
 
 Cells: TypeAlias = dict[str, list[float | str]]
 
@@ -75,7 +75,7 @@ class Known:
         self.verdict: str | None = None
 
     def learn(self, rows: Rows, said: Sequence[str], scenario: Scenario) -> Piece:
-        """What is new of it, and what was said meanwhile."""
+        """Takes rows, and words `said` meanwhile; gives what is new for the page."""
         self._time = rows.trace[-1].time if rows.trace else self._time
         tables = tables_in(rows, scenario)
         tables = tables._replace(marks=joined([tables.marks, *self._marks(said)]))
@@ -94,7 +94,7 @@ class Known:
 
     @property
     def whole(self) -> Piece:
-        """For who comes now."""
+        """All of it, for a reader who comes now."""
         return Piece(self._tables, self._texts, self.stopped, True, self.verdict)
 
 

@@ -29,7 +29,7 @@ class Made(NamedTuple):
 
 
 def make_package(kind: Kind, name: str, parent: Path) -> Made:
-    """In a new folder `parent/name`, with a module, an entry point and a test.
+    """A package in a new folder `parent/name`: a module, an entry point and a test.
 
     Raises ScenarioError for a name that cannot be a package's, or is taken; PlaceError where it
     cannot go.

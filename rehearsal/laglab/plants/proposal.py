@@ -50,12 +50,12 @@ class Proposal:
     start: Mapping[str, str] = field(default_factory=dict)
 
     def fields(self) -> dict[str, Any]:
-        """As in `[plant]`."""
+        """The keys of `[plant]`."""
         tables = {"inputs": self.inputs, "outputs": self.outputs, "start": self.start}
         return {name: dict(table) for name, table in tables.items() if table}
 
     def roles(self) -> dict[str, str]:
-        """Theirs → whose."""
+        """Their name → what it is for, such as `outputs.x`."""
         tables = ("inputs", self.inputs), ("outputs", self.outputs), ("start", self.start)
         return {
             theirs: f"{table}.{ours}" for table, names in tables for ours, theirs in names.items()

@@ -19,9 +19,9 @@ V, OMEGA = 0.3, 0.5
 PHASE = 1.0
 """[s]"""
 STILL = 1e-6
-"""[m, rad] Who has moved by no more has not moved."""
+"""[m, rad] A robot that has moved by no more has not moved."""
 PATIENCE = 60.0
-"""[s] A plant that has not come so far by then does not come back."""
+"""[s] A plant that has not been driven by then does not come back."""
 
 
 class PlantCheckError(LaglabError):

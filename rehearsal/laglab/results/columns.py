@@ -42,14 +42,14 @@ def read_columns(path: Path, kind: type[Row]) -> Columns:
 
 
 def column_pieces(path: Path, kind: type[Row]) -> Iterator[Columns]:
-    """The same, so many rows at a time; a row that was cut short is left out."""
+    """The same, AT_A_TIME rows at a time; a row cut short is left out. Raises NoRunError."""
     hints = get_type_hints(kind)
     if path.exists():
         yield from csv_pieces(path, tuple(hints), lambda lines: _parsed(lines, hints))
 
 
 def csv_pieces(path: Path, names: Sequence[str], parsed: Callable[[Lines], T]) -> Iterator[T]:
-    """What a CSV file of these columns holds, so many rows at a time. Raises NoRunError."""
+    """What a CSV file of these columns holds, AT_A_TIME rows at a time. Raises NoRunError."""
     try:
         with path.open(newline="", encoding="utf-8") as file:
             lines = csv.reader(file)
@@ -68,17 +68,17 @@ def joined(pieces: Iterable[Mapping[str, NDArray[Cell]]]) -> dict[str, NDArray[C
 
 
 def stride(rows: int, most: int) -> int:
-    """Every so manyth of the rows leaves no more than the most."""
+    """The least step through the `rows` that takes no more than `most` of them."""
     return max(1, -(-rows // most))
 
 
 def thinned(columns: Mapping[str, NDArray[Cell]], every: int) -> dict[str, NDArray[Cell]]:
-    """Every so manyth row; no view, which would keep all of them in memory."""
+    """One row of `every`; copied, as a view would keep all of them in memory."""
     return {name: column[::every].copy() for name, column in columns.items()}
 
 
 def places(keys: Array, wanted: NDArray[np.generic]) -> tuple[NDArray[np.bool_], NDArray[np.intp]]:
-    """Which of the `wanted` are among the keys, which go up, and where."""
+    """Which of the `wanted` are among the keys, which go up, and in which rows these are."""
     rows = np.searchsorted(keys, wanted.astype(float))
     there = rows < len(keys)
     there[there] = keys[rows[there]] == wanted[there]

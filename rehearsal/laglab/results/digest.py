@@ -55,8 +55,8 @@ def _last_second(pieces: list[Trace]) -> Trace:
 
 
 def followed(pieces: Iterable[Trace], of: Target, rows: int) -> Following | None:
-    """How well the path was followed, over the second half of a trace of so many rows; None where
-    there was none."""
+    """How well the path was followed, over the second half of a trace of `rows` rows; None without
+    a path."""
     if of.path is None:
         return None
     first, count, squares, largest = rows // 2, 0, 0.0, 0.0

@@ -21,7 +21,7 @@ Flags = NDArray[np.bool_]
 DIRECTIONS = ("command", "measurement")
 DELIVERED, OUTAGE = "delivered", "outage"
 SILENT = 20
-"""[ticks] So long nothing gets through a link that is out, whatever it is called in the record."""
+"""[ticks] When nothing gets through for so long it is an outage, whatever the record calls it."""
 
 
 class Span(NamedTuple):
@@ -40,9 +40,9 @@ class DirectionView:
     delay: Array = field(default_factory=lambda: np.empty(0))
     """How long after its stamp [ticks]; of a long run each stretch's shortest and longest."""
     lost: dict[str, Array] = field(default_factory=dict)
-    """By cause when something went into the link and was lost, or came and was refused [s]."""
+    """By cause: when something went into the link and was lost, or came and was refused [s]."""
     counts: dict[str, int] = field(default_factory=dict)
-    """By cause how many, drawn or not."""
+    """By cause: how many, drawn or not."""
     outages: list[Span] = field(default_factory=list)
     """When nothing that went in got through."""
 
@@ -97,7 +97,7 @@ class _Arrivals:
         self._came: dict[str, list[Array]] = {name: [] for name in DIRECTIONS}
         self._refused: dict[str, list[Array]] = {}
         self.counts = Counter[str]()
-        """Commands refused, by why."""
+        """When commands were refused [s], by reason."""
         self.stops = dict.fromkeys(stops, np.inf)
         """When the robot stopped, and when it went on."""
 
@@ -124,7 +124,7 @@ class _Arrivals:
         return np.concatenate([np.empty((2, 0)), *self._came[direction]], axis=1)
 
     def refused(self, direction: str) -> dict[str, Array]:
-        """Times, by why; only commands are refused."""
+        """Times [s], by reason; only commands are refused."""
         there = self._refused if direction == "command" else {}
         return {why: np.concatenate(times) for why, times in sorted(there.items())}
 
@@ -196,7 +196,7 @@ class _Silences:
 
 
 def _extremes(table: Array, stride: int) -> Array:
-    """Of each stretch of so many columns those where the second row is least and greatest."""
+    """Of every `stride` columns the two where the second row is least and greatest."""
     whole = table.shape[1] // stride * stride
     if stride == 1 or not whole:
         return table

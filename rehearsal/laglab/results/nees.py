@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 NOTHING = 1e-12
-"""Of a variance: what is left below this when the other components are known is rounding."""
+"""A share of a variance: if less is left once the other components are known, that is rounding."""
 
 
 def nees(error: Array, P: Array) -> Array:

@@ -10,9 +10,9 @@ from laglab_gateway import Trace
 
 AXES = ("x", "y", "theta")
 VARIANCES = ("p_xx", "p_yy", "p_tt")
-"""Of these, as tables call them."""
+"""The variances of these, as tables call them."""
 COVARIANCE = ("p_xx", "p_xy", "p_xt", "p_yy", "p_yt", "p_tt")
-"""Its upper triangle."""
+"""The upper triangle of their covariance."""
 DISTANCE_BOUND = 0.06
 HEADING_BOUND = 0.05
 LAST_SECOND = 1.0
@@ -43,27 +43,27 @@ def robot_pose(trace: Trace) -> Array:
 
 
 def measurements(trace: Trace) -> Array:
-    """z_k as sampled, shape (ticks + 1, 3)."""
+    """z_k as sampled, shape (ticks + 1, 3) [m, m, rad]."""
     return np.stack([trace[f"{axis}_meas"] for axis in AXES], axis=1)
 
 
 def loop_estimates(trace: Trace) -> Array:
-    """x̂_k of the estimator in the loop, shape (ticks + 1, 3)."""
+    """x̂_k of the estimator in the loop, shape (ticks + 1, 3) [m, m, rad]."""
     return np.stack([trace[f"{axis}_est"] for axis in AXES], axis=1)
 
 
 def shadow_estimates(trace: Trace, name: str) -> Array:
-    """x̂_k of an estimator that shadowed the loop, shape (ticks + 1, 3)."""
+    """x̂_k of an estimator that shadowed the loop, shape (ticks + 1, 3) [m, m, rad]."""
     return np.stack([trace[f"{axis}_{name}"] for axis in AXES], axis=1)
 
 
 def deviation(trace: Trace, estimates: Array) -> Array:
-    """Estimate less pose, shape (ticks + 1, 3), heading wrapped."""
+    """Estimate less pose, shape (ticks + 1, 3) [m, m, rad], heading wrapped."""
     return pose_difference(estimates, robot_pose(trace))
 
 
 def pose_difference(poses: Array, others: Array) -> Array:
-    """The one less the other, shape (..., 3), heading wrapped."""
+    """Poses less others, shape (..., 3) [m, m, rad], heading wrapped."""
     with np.errstate(invalid="ignore"):
         difference = poses - others
     difference[..., 2] = wrapped(difference[..., 2])
@@ -98,7 +98,7 @@ def last_second(time: Array) -> NDArray[np.bool_]:
 
 
 def has_converged(trace: Trace, goal: Goal) -> bool:
-    """At the goal at every tick of the last second.
+    """Whether it was at the goal at every tick of the last second.
 
     Where the pose is measured, in the second's mean: the sensor's noise does not move the robot.
     """

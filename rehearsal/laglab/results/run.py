@@ -71,7 +71,7 @@ class Run:
 
     @cached_property
     def trace(self) -> Trace:
-        """All columns, each of shape (ticks + 1,). Raises TraceError."""
+        """All columns, each of shape (ticks + 1,). Raises TraceError, NoRunError."""
         trace = self.kept.trace if self.kept else read_trace(self._folder / TRACE_FILE)
         for name in self.scenario.estimator.compare:
             trace = trace | beside(trace, self._shadow(name), name)
@@ -79,23 +79,29 @@ class Run:
 
     @cached_property
     def link(self) -> Columns:
-        """What an impaired link did: a row for each copy of each frame, columns as in link.csv."""
+        """What an impaired link did: a row for each copy of each frame, columns as in link.csv.
+
+        Raises NoRunError.
+        """
         return self._table(LINK_FILE)
 
     @cached_property
     def arrivals(self) -> Columns:
         """When each measurement and each command came, columns as in arrivals.csv: its delay is
-        `arrived` - `tick`."""
+        `arrived` - `tick` [ticks]. Raises NoRunError."""
         return self._table(ARRIVALS_FILE)
 
     @cached_property
     def claims(self) -> Columns:
-        """The covariance that the station claims for its estimates, columns as in claims.csv."""
+        """The covariance that the station claims for its estimates, columns as in claims.csv.
+
+        Raises NoRunError.
+        """
         return self._table(CLAIMS_FILE)
 
     @cached_property
     def timing(self) -> Columns:
-        """How late each tick began and was answered [s], of ticks on the wall clock."""
+        """How late each tick on the wall clock began and was answered [s]. Raises NoRunError."""
         return self._table(TIMING_FILE)
 
     def table_pieces(self, name: str) -> Iterator[Columns]:
@@ -105,8 +111,10 @@ class Run:
         return column_pieces(self._folder / name, ROWS[name])
 
     def figure(self, width: Width = "two") -> Figure:
-        """The run as a picture as wide as so many columns of a page, to be shown or saved. Needs
-        matplotlib."""
+        """The run as a picture, as wide as one column of a page or as two, to be shown or saved.
+
+        Needs matplotlib. Raises ResultsError, TraceError.
+        """
         return draw_run(self, width)
 
     @property
@@ -129,16 +137,16 @@ class Run:
 
     @property
     def stride(self) -> int:
-        """Of so many rows a figure shows one."""
+        """Of how many rows a figure shows one."""
         return stride(self.summary.ticks, MOST_DRAWN)
 
     @cached_property
     def first_tick(self) -> int:
-        """A real robot's first is any."""
+        """The number of the first tick: a real robot may begin at any."""
         return int(next(self.pieces())["tick"][0])
 
     def to_pandas(self) -> pandas.DataFrame:
-        """The trace, a row a tick, indexed by `tick`. Needs pandas."""
+        """The trace, a row a tick, indexed by `tick`. Needs pandas. Raises as `trace`."""
         import pandas
 
         frame = pandas.DataFrame(dict(self.trace))

@@ -30,7 +30,7 @@ def shadow_file(directory: Path, name: str) -> Path:
 
 
 def file_name(name: str) -> str:
-    """What stands for an estimator's name in a file's, which `module:Class` cannot everywhere."""
+    """An estimator's name as part of a file's: not every system allows `module:Class` there."""
     return quote(name, safe="")
 
 
@@ -45,7 +45,7 @@ def shadow_rows(
 
 
 def until_it_fails(rows: Iterable[ShadowRow], fail: Callable[[str], None]) -> Iterator[ShadowRow]:
-    """All of them, or those before what somebody brought failed, which is told."""
+    """All of them, or those before somebody's code failed; `fail` is told how."""
     try:
         yield from rows
     except PluginFailedError as error:
@@ -79,7 +79,7 @@ def read_shadow(path: Path) -> Shadow:
 
 
 def shadow_pieces(path: Path) -> Iterator[Shadow]:
-    """The same, so many rows at a time; one piece at least, if without a row."""
+    """The same, piece by piece; there is one at least, if without a row. Raises NoRunError."""
     yield _columns([])
     yield from csv_pieces(path, COLUMNS, _columns)
 

@@ -16,7 +16,7 @@ EXIT_CODES = {
 KNOWN_BEFORE = 2
 BROKE = 4
 STOPPED = 5
-"""By an emergency stop; the run went on to its end without the robot."""
+"""An emergency stop: the run went on to its end without the robot."""
 
 
 @dataclass(frozen=True)

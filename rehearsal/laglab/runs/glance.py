@@ -35,14 +35,14 @@ class Glance(Struct, frozen=True):
 
 
 Told = Callable[[int, Glance | None], None]
-"""Told of the tick that is over now and then; at a glance where the run goes by the clock."""
+"""Told now and then which tick is over, and how the run is where it goes by the clock."""
 
 
 def watched(
     recorder: Recorder, scenario: Scenario, plant: str | None
 ) -> tuple[Recorder, Callable[[], Glance | None]]:
-    """A recorder that tells the given one all, and how the run is, if it goes by a clock: in
-    lock-step nobody could read it."""
+    """A recorder that tells the given one all, and a function that says how the run is; nothing in
+    lock-step, where nobody could read it."""
     if scenario.pace != "realtime" and plant is None:
         return recorder, lambda: None
     glances = Glances(scenario)

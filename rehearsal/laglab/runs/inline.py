@@ -18,7 +18,7 @@ class InlineLink(Link):
         self._receiver = receiver
         self._inbox = [b"".join(station.heartbeat())]
         self.problem = ""
-        """What somebody brought failed in, which ended the run."""
+        """How somebody's code failed, which ended the run."""
 
     def fileno(self) -> int:
         """There is nothing to wait for."""

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 NEW_OBJECTS = 20_000
-"""So many are looked through at a time, in half a millisecond; the loop's own make no cycles."""
+"""Looked through at a time, which takes half a millisecond; the loop's own make no cycles."""
 
 
 @contextmanager

@@ -39,9 +39,9 @@ Transport = Literal["inline", "udp", "serial"]
 MakeController = Callable[[StationConfig], Controller]
 
 NOTICE_SECONDS = 1.0
-"""What a gateway needs, besides the silence timeout, to say that its station is silent."""
+"""[s] What a gateway needs, besides the silence timeout, to say that its station is silent."""
 GOODBYE_SECONDS = 0.5
-"""What a station needs for its last words when a gateway has ended in order."""
+"""[s] What a station needs for its last words when a gateway has ended in order."""
 
 
 def unheard(_: object, __: object) -> None:
@@ -178,7 +178,7 @@ class _Rehearsal:
         return None
 
     def _read_on(self, patience: float) -> None:
-        """A side whose far end is gone gets so long [s] to find and say so, and no longer."""
+        """A side whose far end is gone gets `patience` [s] to find and say so, and no longer."""
         deadline = None
         while not (self._over and self._station_over):
             if deadline is None and (self._over or self._station_over):

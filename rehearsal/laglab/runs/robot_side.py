@@ -1,4 +1,4 @@
-"""The robot's side of a rehearsal, from its scenario: a gateway, and the FMU or a real robot."""
+"""The robot's side of a rehearsal, from its scenario: a gateway, and its plant or a real robot."""
 
 import math
 import time
@@ -61,7 +61,7 @@ class Setup:
     """What a run needs besides its scenario."""
 
     plant: str | None = None
-    """The address of the real robot; None: the FMU."""
+    """The address of the real robot; None: the scenario's plant."""
     key: Path | None = None
     """The file of the key that signs every frame of the gateway and of those who speak to it."""
     armed: bool = True
@@ -77,7 +77,7 @@ class Setup:
     def check(self) -> None:
         """What can be known to be wrong before anything runs.
 
-        Raises KeyFileError, and ScenarioError for a key of nothing.
+        Raises KeyFileError, and ScenarioError for a key without a real robot.
         """
         keys = [read_key(each) for each in (self.key, self.plant_key) if each is not None]
         if self.plant_key is not None and self.plant is None:
@@ -160,7 +160,7 @@ def link_fates(scenario: Scenario) -> dict[Direction, Fates]:
 
 
 def wrapped_replay(scenario: Scenario) -> str | None:
-    """In a line, that a run is longer than what it replays; None where it is not."""
+    """Says in a line that a run is longer than what it replays; None where it is not."""
     if (log := scenario.link.replay) is None:
         return None
     recorded = len(recorded_ticks(*(read_link_log(log, direction) for direction in DIRECTIONS)))
@@ -202,7 +202,10 @@ class OpenRobot:
 
 @contextmanager
 def open_robot(scenario: Scenario, setup: Setup) -> Iterator[OpenRobot]:
-    """The robot's side: the FMU, or the real robot."""
+    """The robot's side: of the scenario's plant, or of the real robot.
+
+    Raises KeyFileError, ScenarioError; as `open_plant` does; of a real robot EndpointError.
+    """
     setup.check()
     with Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, setup.key) as codec:
         if setup.plant is None:

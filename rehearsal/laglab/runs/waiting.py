@@ -6,11 +6,11 @@ from threading import Thread
 from laglab_control import PluginError
 
 START = 30.0
-"""[s] So long a side, or what somebody brought, may take to begin."""
+"""[s] How long a side, or what somebody brought, may take to begin."""
 
 
 def in_time(name: str, work: Callable[[], object], seconds: float = START) -> None:
-    """Does the work. Raises what it raises, or PluginError: it goes on still after so long.
+    """Does the work. Raises what it raises, or PluginError: it still goes on after `seconds`.
 
     It is done in a thread, which nobody can stop: whoever hears of it ends the process.
     """

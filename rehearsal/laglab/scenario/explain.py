@@ -19,7 +19,7 @@ def explained(scenario: Scenario) -> str:
 
 
 def spelled(value: object) -> str:
-    """As in a file; what is not there, is not set."""
+    """As in a file; None is a key that is not set."""
     if value is None:
         return NOT_SET
     if isinstance(value, dict):

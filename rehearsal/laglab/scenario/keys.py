@@ -19,7 +19,7 @@ class Key(NamedTuple):
 
     name: str
     attribute: str
-    """Its value's in Python."""
+    """What it is called in Python."""
     unit: str
     sentence: str
     default: object

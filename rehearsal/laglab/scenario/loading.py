@@ -63,7 +63,7 @@ def shipped() -> dict[str, Scenario]:
 
 
 def shipped_names() -> list[str]:
-    """Of the scenarios that come with the package."""
+    """The names of the scenarios that come with the package."""
     return shipped_in(SHIPPED)
 
 
@@ -76,7 +76,7 @@ def _read(reference: str) -> tuple[dict[str, Any], Path]:
 
 
 def _anchored(fields: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """With the files that it names, relative to its folder, as ones that can be opened."""
+    """The files that it names, relative to its folder, as ones that can be opened from here."""
     for table, key in FILES:
         match fields.get(table):
             case dict(keys) if isinstance(keys.get(key), str):

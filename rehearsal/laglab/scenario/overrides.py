@@ -17,7 +17,7 @@ def both_ways(**impairments: object) -> Overrides:
 
 
 def assignment(text: str) -> tuple[str, object]:
-    """`KEY=VALUE`, a dotted key and a TOML value; words that are none are text.
+    """`KEY=VALUE`, a dotted key and a TOML value; words that are no TOML are text.
 
     Raises: ScenarioError.
     """

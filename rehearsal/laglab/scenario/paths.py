@@ -75,7 +75,7 @@ def _shape(told: str, centre: Centre) -> control.Path:
 
 @lru_cache(maxsize=8)
 def _read(name: str, _: int) -> control.Path:
-    """A file that has changed since, with its time, is another one."""
+    """Read once, but for a file whose time of change, the second argument, is another one."""
     try:
         with Path(name).open(encoding="utf-8-sig", newline="") as file:
             rows = csv.DictReader(file)

@@ -8,11 +8,11 @@ from typing import Any
 from laglab.errors import LaglabError
 
 DEEPEST = 50
-"""Tables and lists in each other; no file of ours has ten."""
+"""Levels of tables and lists in each other; no file of ours has ten."""
 
 
 def parsed(text: str) -> dict[str, Any]:
-    """Raises ValueError: not TOML, or tables and lists in each other beyond all measure."""
+    """Raises ValueError: not TOML, or tables and lists nested deeper than DEEPEST."""
     try:
         fields = tomllib.loads(text)
     except RecursionError:

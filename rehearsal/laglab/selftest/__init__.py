@@ -1,4 +1,4 @@
-"""The conformance kit on parsers that others wrote: which of its items can a robot on them pass?"""
+"""The conformance kit on parsers that others wrote: which of its items a robot with each passes."""
 
 from laglab.selftest.table import SelfTest, self_test
 

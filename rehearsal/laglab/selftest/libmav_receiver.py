@@ -23,7 +23,7 @@ from laglab_protocol import (
 from laglab_protocol.dialect.mavgen import carried_dialects, dialect_path
 
 READS_WITHIN = 0.02
-"""[s] It reads in a thread of its own, and does not say when it has found nothing."""
+"""[s] To wait for it: it reads in its own thread, and does not say when it found nothing."""
 CONNECTS_WITHIN = 5.0
 
 

@@ -50,7 +50,7 @@ class SelfTest(NamedTuple):
     missing: dict[str, str]
 
     def table(self) -> str:
-        """A line an item, a column a parser; below it, a line for each that is not there."""
+        """A line for each item, a column for each parser; below, a line for each missing."""
         names = list(self.reports)
         lines = [_line("", names)]
         for row in zip(*(report.results for report in self.reports.values()), strict=True):

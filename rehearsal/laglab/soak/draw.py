@@ -74,7 +74,7 @@ def _blow(rng: np.random.Generator) -> Blow:
 def _strangers(
     rng: np.random.Generator, transport: Transport, blow: Blow | None
 ) -> tuple[Strangers, ...]:
-    """A few of them. While no station is heard from, an impostor without a key is one."""
+    """A few of them. With a blow no impostor: while no station is heard from, it would be one."""
     of = UDP_STRANGERS if transport == "udp" and blow is None else SERIAL_STRANGERS
     chosen = rng.choice(len(of), size=int(rng.integers(1, len(of) + 1)), replace=False)
     return tuple(of[i] for i in sorted(chosen))

@@ -19,12 +19,12 @@ FILLING = 24 << 20
 FULL_AFTER = 5_000
 """Ticks."""
 FEWEST_SAMPLES = 8
-"""To tell growth by."""
+"""Fewer do not tell growth."""
 MOST_DESCRIPTORS = 32
 
 
 def exit_codes(played: Played) -> Iterator[str]:
-    """As the README has them."""
+    """As docs/reference/errors.md lists them."""
     for part in played.parts:
         allowed = _allowed(played, part)
         if part.exit_code not in allowed:

@@ -37,7 +37,7 @@ def _torn(folder: Path) -> Iterator[str]:
 
 
 def _torn_table(path: Path) -> str:
-    """Every line is whole, and there is at least the head."""
+    """What is torn; empty when every line is whole, and there is at least the head."""
     commas = set()
     line = b""
     with path.open("rb") as lines:
@@ -68,7 +68,7 @@ def told_of(folder: Path) -> tuple[str, int]:
 
 
 def left_in(folder: Path, temporary: Path) -> Iterator[str]:
-    """What has no business there any more."""
+    """What has no business to be there any more."""
     yield from (f"{temporary.name}/{path.name}" for path in temporary.iterdir())
     if folder.exists():
         ours = {*OURS, *(shadow_file(folder, name).name for name in ESTIMATORS)}

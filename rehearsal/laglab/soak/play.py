@@ -24,9 +24,9 @@ LOOK_EVERY = 0.05
 LAST_WORDS = 60.0
 """[s] Besides the silence: results, shadows and a figure, on a machine that is busy."""
 UNMET = 3.0
-"""[s] Who has met nobody waits for ever; when the other one is over, we wait only so long."""
+"""[s] A side that met nobody waits for ever; once the other one is over it gets this long."""
 LONGEST = 300.0
-"""[s] No turn takes so long."""
+"""[s] A turn that takes longer is broken off."""
 BAUD = 57600
 SCENARIO, KEY, PORT, WATCH = "scenario.toml", "key", "port", "watch"
 
@@ -60,7 +60,7 @@ def play(turn: Turn, folder: Path) -> Played:
 
 
 def _rounded_up(mark: str) -> list[int]:
-    """Whoever still runs that came of the turn; they do so no longer."""
+    """The processes of the turn that still ran; they are killed."""
     running = marked(mark)
     for number in running:
         with suppress(ProcessLookupError):
@@ -112,7 +112,7 @@ class _Stage:
 
     @property
     def datagrams(self) -> int:
-        """That strangers have sent."""
+        """How many strangers have sent."""
         return self._speaking.sent if self._speaking else 0
 
     def clear(self) -> None:

@@ -51,7 +51,7 @@ class Process:
 
     @property
     def running(self) -> bool:
-        """Whether it is."""
+        """Whether it still runs."""
         if self._process.poll() is None:
             return True
         self.ended_at = self.ended_at or monotonic()
@@ -69,11 +69,11 @@ class Process:
 
     @property
     def sent_home(self) -> bool:
-        """Whether it was."""
+        """Whether it was sent home."""
         return self._sent_home is not None
 
     def look(self) -> None:
-        """At what it takes. What comes after a signal is not a run under way."""
+        """Note what it takes; a sample only while the run is under way, not after a signal."""
         seen = look(self._process.pid)
         if seen is None:
             return
@@ -104,7 +104,7 @@ class Process:
             self._process.kill()
 
     def kill(self) -> None:
-        """Whatever it does."""
+        """Kill it, whatever it does."""
         self._process.kill()
         self._process.wait()
 

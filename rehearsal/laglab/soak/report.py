@@ -12,7 +12,7 @@ from laglab.soak.tally import Tally
 from laglab.tables import plain_table
 
 SCHEMA = 1
-"""Of the JSON; another number, another meaning of a field."""
+"""The version of the JSON: another one when a field means something else."""
 MB = 1 << 20
 
 

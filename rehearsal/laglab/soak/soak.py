@@ -44,7 +44,7 @@ class Soak:
             self.turn(self.tally.turns + 1)
 
     def turn(self, number: int) -> None:
-        """That one; its record is kept if something was not as expected."""
+        """Play that one; its record is kept if something was not as expected."""
         turn = draw(generator(self.seed, number), number)
         place = self.folder / f"turn-{number}"
         with _whole_or_gone(place):

@@ -28,7 +28,7 @@ ANOTHER_KEY = bytes(32)
 HEARTBEAT = Heartbeat(0, 6, 8, 0, 4, 3)
 LOOPBACK = "127.0.0.1"
 LINE_SHARE = 0.02
-"""Of what strangers send, on the loop's own line, which has no room for more."""
+"""The share of what strangers send on the loop's own line, which has no room for more."""
 
 Say = Callable[[bytes], None]
 
@@ -55,7 +55,7 @@ class Speaking:
     """Strangers that talk in a thread, until the context ends."""
 
     def __init__(self, said: Sequence[bytes], places: Mapping[Say, float], rate: float) -> None:
-        """`places`: where it is said, and how often as `rate` has it [1/s]."""
+        """`places`: where it is said, each with its share of the `rate` [1/s]."""
         self.sent = 0
         self._said = itertools.cycle(said)
         self._places = places

@@ -21,7 +21,7 @@ class Look(NamedTuple):
     """[bytes] Since its start, files included."""
     descriptors: int
     obeys: bool
-    """Whether it has said what a SIGTERM does."""
+    """Whether it handles SIGTERM by now."""
 
 
 def require_processes() -> None:
@@ -33,7 +33,7 @@ def require_processes() -> None:
 
 
 def look(process: int) -> Look | None:
-    """None: it has ended."""
+    """What the process takes; None: it has ended."""
     folder = PROCESSES / str(process)
     try:
         told = dict(_STATUS.findall((folder / "status").read_text()))

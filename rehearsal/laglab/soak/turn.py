@@ -15,7 +15,7 @@ Strangers = Literal["garbage", "foreign frames", "requests", "bad signatures", "
 PATIENCE = 10.0
 """[s] The silence that a side forgives: the machine may be busy with other things."""
 SHORT_PATIENCE = 2.0
-"""[s] The same where a side is to be missed."""
+"""[s] The same where a side is ended and has to be missed."""
 LONG_PATIENCE = 30.0
 """[s] The same where a side is started again, which takes as long as Python and its modules."""
 

@@ -15,7 +15,7 @@ from laglab.tables import plain_table
 from laglab_control import Erratum, PrintedController
 
 EXACT = 1e-9
-"""Below this, an error is rounding."""
+"""[m, rad] Below this, an error is rounding."""
 
 
 class Variant(NamedTuple):

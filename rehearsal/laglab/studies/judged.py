@@ -69,7 +69,7 @@ class Judge:
         """The last tick at which it was elsewhere than where it ought to be."""
         self._rms = RmsError()
         self._nees, self._claims = np.zeros(robots), np.zeros(robots)
-        """The sum, and of how many."""
+        """The sum of NEES, and over how many ticks."""
         self._largest = np.full((robots, 2), np.nan)
 
     def add(self, stretch: Stretch) -> None:

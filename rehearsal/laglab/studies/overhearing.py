@@ -39,7 +39,7 @@ class Known(NamedTuple):
 
 
 def known(controller: Controller, control: Control, news: bool) -> Known:
-    """All of it; `news`: whether a measurement came at this tick."""
+    """All that a filter knows at this tick; `news`: whether a measurement came."""
     x, P, n = control.pose, control.P, control.flight.command_delay
     ahead = controller.at_arrival(control)
     if x is None or P is None or ahead is None or not np.all(np.isfinite(x)):
@@ -94,7 +94,7 @@ class Overhearing(Controller):
         return control
 
     def _note(self, name: str, what: Known) -> None:
-        """What has become infinite says no more."""
+        """NaN for what has become infinite, which says no more."""
         self.said.setdefault(name, []).append(what)
         if not np.isfinite(what.x).all():
             self._beside.pop(name, None)

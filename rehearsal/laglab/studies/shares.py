@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Share = Callable[[str, str], tuple[float, str]]
-"""Of a row and a column: which part of the runs, and what is said of it besides."""
+"""Called with a row and a column: gives the share of the runs, and what is written below it."""
 
 
 def draw_shares(

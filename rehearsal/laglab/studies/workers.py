@@ -19,9 +19,9 @@ from laglab.runs.processes.reports import Computed, Ended, Failed
 Job = TypeVar("Job")
 Answer = TypeVar("Answer")
 MOST_DEATHS = 3
-"""A job at which so many workers have died is given up: it is likely to be the cause."""
+"""A job at which this many workers died is given up: it is likely to be the cause."""
 SOON = 0.1
-"""[s] So often a worker's thread looks whether all is over."""
+"""[s] How often a worker's thread looks whether all is over."""
 
 
 class Executor(Protocol):
@@ -143,7 +143,7 @@ def _done(call: Call) -> "Iterator[object]":
 def as_done(
     executor: Executor, function: Callable[[Job], Answer], jobs: Iterable[Job], ahead: int
 ) -> "Iterator[tuple[Job, Future[Answer]]]":
-    """The jobs, in the order in which they are done; at most so many are underway at once."""
+    """The jobs, in the order in which they are done; at most `ahead` are underway at once."""
     done: Queue[tuple[Job, Future[Answer]]] = Queue()
     underway = 0
     for job in jobs:

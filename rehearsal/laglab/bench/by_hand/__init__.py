@@ -1,6 +1,6 @@
-"""The same by hand: what one would write without laglab, and the least that could do it.
+"""What the benches measure, by hand: as one would write it without laglab, and the least that does.
 
-The `loop` by hand needs FMPy, and is not listed here: who asks for help does without.
+`loop` needs FMPy and so is not imported here: `laglab bench --help` does without.
 """
 
 from laglab.bench.by_hand.echo import Link, seconds_per_echo, tick_sizes

@@ -30,7 +30,7 @@ class EchoOrder(Struct, frozen=True):
 
 Send = Callable[[bytes], object]
 Receive = Callable[[int], bytes]
-"""At most so many bytes."""
+"""Answers at most as many bytes as it is given."""
 
 
 class Sizes(Struct, frozen=True):
@@ -41,7 +41,7 @@ class Sizes(Struct, frozen=True):
 
 
 def tick_sizes(estimates: bool) -> Sizes:
-    """Of a tick with one measurement, answered with or without an estimate."""
+    """Those of a tick with one measurement, answered with or without an estimate."""
     measurement = Measurement(*POSE, 0.1, 0.1, 1, 1)
     answer: list[Message] = [Command(0.1, 0.1, 1, 1, 1, int(estimates))]
     if estimates:

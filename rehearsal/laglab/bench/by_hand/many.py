@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 
 class Situation(NamedTuple):
-    """Of all robots alike."""
+    """What is the same for all robots; n, m and the length in ticks."""
 
     config: StationConfig
     n: int

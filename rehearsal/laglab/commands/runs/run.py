@@ -74,6 +74,6 @@ def run(
 
 
 def _parts(scenario: Scenario) -> str:
-    """What somebody else may have written of them."""
+    """The parts of the run that somebody else may have written."""
     kinds = (scenario.estimator.kind, *scenario.estimator.compare, scenario.law.kind)
     return " or ".join([kind for kind in kinds if is_module_class(kind)] or kinds)

@@ -19,7 +19,7 @@ from laglab.tables import terminal
 
 JUDGED = ("ekf", "popf", "popf-exact", "delayed-ekf")
 MOST_SEEDS = 10_000
-"""All that each of them gives is kept in memory: half a megabyte and more."""
+"""Each seed's samples are kept in memory: half a megabyte and more."""
 
 
 @partial(on_scenario, by_default="lab")
@@ -59,7 +59,7 @@ def consistency(
 
 
 def _check(scenario: Scenario, seeds: int) -> None:
-    """Raises: ScenarioError, when there is nothing to judge, or not so many seeds."""
+    """Raises: ScenarioError, when there is nothing to judge, or there are fewer seeds."""
     m = scenario.link.m
     if scenario.must_end() < m:
         raise ScenarioError(f"{scenario.name}: the run is over before a measurement has arrived")

@@ -9,11 +9,11 @@ Numbers = tuple[float, ...]
 WORLD = "world"
 EXACT = (0.0,) * 6
 UNKNOWN = (-1.0, *EXACT[1:])
-"""Upper triangles of a covariance of x, y, θ. For what is not known ROS has −1 in front; of NaN its
-viewers drop the whole message."""
+"""Upper triangles of covariances of x, y, θ. In ROS a −1 in front says that it is not known; its
+viewers drop a whole message that has a NaN."""
 AT_REST = (0.0, 0.0)
 PLACES = ((0,), (1, 6), (5, 30), (7,), (11, 31), (35,))
-"""Of xx, xy, xθ, yy, yθ, θθ in ROS's 6 × 6, whose rows are x, y, z, roll, pitch, yaw."""
+"""The places of xx, xy, xθ, yy, yθ, θθ in ROS's 6 × 6, whose rows are x, y, z, roll, pitch, yaw."""
 
 
 def header(time: int, frame: str = WORLD) -> Message:

@@ -41,7 +41,7 @@ ROBOT, ESTIMATED = "robot", "robot_estimate"
 LATEST = 65_536
 """Ticks after which no measurement comes any more: the link's longest delay."""
 ROUNDING = 1e-6
-"""Seconds: times are sums of doubles."""
+"""[s] Times this near are the same: they are sums of doubles."""
 MEASURED = ("x_meas", "y_meas", "theta_meas")
 APPLIED_SPEEDS = ("v", "omega")
 SENT_SPEEDS = ("v_sent", "omega_sent")

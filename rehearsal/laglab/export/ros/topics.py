@@ -11,7 +11,7 @@ class Topic(NamedTuple):
     sentence: str
 
     def below(self, word: str) -> "Topic":
-        """One of several of the kind."""
+        """One of several topics of this kind, named below it."""
         return self._replace(name=f"{self.name}/{word}")
 
 

@@ -9,9 +9,9 @@ from laglab.link.link_table import Bounds
 from laglab.link.measured import Flow, MeasuredLink
 
 ROUNDING = 1e-6
-"""[ticks] What comes this little after a tick counts at it: a clock tells no finer."""
+"""[ticks] What comes this little after a tick counts as on it: a clock tells no finer."""
 LATE = (0.1, 0.05, 0.02, 0.01, 0.005, 0.001, 0.0)
-"""Shares of the frames that came."""
+"""Shares of late frames, of those that came, for which bounds are worth a thought."""
 
 
 class Choice(NamedTuple):
@@ -35,7 +35,7 @@ def delay_in_ticks(flow: Flow, interval: float) -> NDArray[np.int_]:
 
 
 def bound_for(flow: Flow, interval: float, late: float) -> int:
-    """The least with which no larger share of the frames that came is late."""
+    """The least bound [ticks] by which no more than the share `late` of those that came is late."""
     ticks = np.sort(delay_in_ticks(flow, interval))
     if not len(ticks):
         return 0
@@ -54,7 +54,7 @@ def _choice(measured: MeasuredLink, bounds: Bounds) -> Choice:
 
 
 def suggested(measured: MeasuredLink, late: float) -> Choice:
-    """The least bounds with which no more than such a share is late."""
+    """The least bounds by which no more than the share `late` is late."""
     command, measurement = (bound_for(flow, measured.interval, late) for _, flow in measured.flows)
     return _choice(measured, Bounds(command, measurement))
 

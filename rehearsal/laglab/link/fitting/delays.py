@@ -9,10 +9,10 @@ from laglab.link.measured import Array
 from laglab_gateway import ExtraDelay
 
 CLOSE = 0.02
-"""So far a distribution of two numbers may be from what was measured, at most (Kolmogorov and
-Smirnov's distance); else it is a table."""
+"""How far a distribution of two numbers may be from what was measured (Kolmogorov-Smirnov
+distance); beyond that it is a table."""
 STEPS = (10, 20, 50, 100, 200)
-"""Of a table's probability: the first that does, for its distance and its tail."""
+"""Steps of a table's probability: the fewest are taken that do for its distance and its tail."""
 TAIL, TAIL_CLOSE = 0.99, 0.03
 LEAST_SCATTER = 2e-5
 """[s] What scatters less is constant: clocks and programs do."""

@@ -6,7 +6,7 @@ from laglab.link.measured import Array, Flow
 from laglab_gateway import Impairments, RandomFates
 
 LEAST = 20_000
-"""Frames: of fewer, chance decides."""
+"""[frames] With fewer, chance decides."""
 SEED = 1
 
 
@@ -25,7 +25,7 @@ def simulated(link: Impairments, fixed: float, like: Flow, interval: float) -> F
 
 
 def distance(first: Array, second: Array) -> float:
-    """Kolmogorov and Smirnov's, of two samples."""
+    """The Kolmogorov-Smirnov distance of two samples; 0 where one is empty."""
     if not (len(first) and len(second)):
         return 0.0
     both = np.concatenate([first, second])

@@ -16,9 +16,9 @@ from laglab_gateway import Burst
 SURE = 3.0
 """[standard deviations] Losses that follow each other more often than by chance come in bursts."""
 ENOUGH = 100
-"""Losses: of fewer it is not told whether frames get through within a burst."""
+"""Losses: fewer do not tell whether frames get through within a burst."""
 LEAST_THROUGH = 0.02
-"""A smaller share that gets through in the bad state is none."""
+"""A smaller share that gets through in the bad state counts as none."""
 
 
 class Losses(NamedTuple):
@@ -29,7 +29,7 @@ class Losses(NamedTuple):
 
 
 def fit_losses(lost: Flags) -> Losses:
-    """What loses as many frames, and as many in a row."""
+    """A model that loses as many frames, and as many in a row."""
     share = float(lost.mean()) if len(lost) else 0.0
     if not 0 < share < 1:
         return Losses(share)

@@ -55,7 +55,10 @@ def _frames_of(payload: bytes) -> Iterable[Frame]:
 
 
 def answers(heard: Iterable[Heard], how: How, name: str) -> MeasuredLink:
-    """From each tick's first LAGLAB_TICK to its first LAGLAB_COMMAND, by halves."""
+    """Halves of the times from each tick's first LAGLAB_TICK to its first LAGLAB_COMMAND.
+
+    Raises LinkFileError: no run is in it, or its ticks all have one time.
+    """
     asked: dict[int, float] = {}
     answered: dict[int, float] = {}
     for time, frame in heard:

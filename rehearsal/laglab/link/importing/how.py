@@ -21,7 +21,7 @@ class How(NamedTuple):
     interval: float | None = None
     """[s] From tick to tick; None: as the file has it."""
     within: float | None = None
-    """[s] So far the two machines' clocks agree; None: that is not known."""
+    """[s] Within which the two machines' clocks agree; None: that is not known."""
     back: Path | None = None
     """The measurements' direction, where a file has only one."""
 
@@ -29,7 +29,7 @@ class How(NamedTuple):
 def by_halves(
     sent: Array, took: Array, interval: float, how: How, note: str, *more: str
 ) -> MeasuredLink:
-    """Of round trips, NaN where no answer came: half of each is each way's."""
+    """The link by its round trips `took` [s], NaN where no answer came: half of each, each way."""
     lost = np.isnan(took)
     return MeasuredLink(
         Flow(sent, took / 2, how.sizes.command),

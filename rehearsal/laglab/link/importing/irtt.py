@@ -66,7 +66,7 @@ def _measured(
 
 
 def _number(trip: Json, *path: str) -> float:
-    """NaN where it is not."""
+    """NaN where there is none."""
     value: object = trip
     for key in path:
         value = cast("Json", value).get(key) if isinstance(value, Mapping) else None

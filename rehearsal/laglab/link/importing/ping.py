@@ -12,7 +12,7 @@ from laglab.link.measured import Array, MeasuredLink
 from laglab_gateway import MOST_TICKS
 
 LONGEST_LINE = 400
-"""[character] No ping prints a longer one; to look through one takes its length squared."""
+"""[characters] No ping prints a longer line; the time to search one grows as its square."""
 NUMBER = re.compile(r"\b(?:icmp_)?seq[= ](\d{1,10})\b")
 AT = re.compile(r"^\[(\d{1,12}\.\d+)\] ")
 TIME = re.compile(r"\btime[=<](\d{1,9}(?:\.\d+)?) ?ms")
@@ -23,11 +23,11 @@ TOOK = re.compile(r"\btime (\d{1,15}) ?ms")
 USUAL = 1.0
 """[s] From ping to ping, where nothing says otherwise."""
 WRAP = 65536
-"""Of the numbers that travel."""
+"""A ping's number travels in 16 bits."""
 
 
 class _Numbered(NamedTuple):
-    """A line about one ping: its number, which goes on where it wraps."""
+    """A line about one ping: its number, which goes on where the one that travels wraps."""
 
     number: int
     took: float
@@ -37,7 +37,7 @@ class _Numbered(NamedTuple):
 
 
 def is_ping(text: str) -> bool:
-    """Whether there is any answer in it, or a word of none."""
+    """Whether it tells of an answer, or that none came."""
     return any(
         SENT.match(line) or WINDOWS.match(line) or NUMBER.search(line) for line in _lines(text)
     )
@@ -89,7 +89,7 @@ def _by_number(told: list[_Numbered], lines: list[str], name: str) -> Array:
 
 
 def _range(told: list[_Numbered], lines: list[str]) -> tuple[int, int]:
-    """Of the numbers: those that are told of, and in a whole output those before and after."""
+    """The first and the last number: of those told of; in a whole output, of all that were sent."""
     first = min(each.number for each in told)
     last = max(each.number for each in told)
     sent = next((int(found[1]) for line in lines if (found := SENT.match(line))), 0)

@@ -23,13 +23,13 @@ CAPTURES = tuple(
 FRAME_START, FRAME_AT = 0xFD, 8
 HEADING = ",".join(LinkRow._fields)
 MOST_BYTES = 256 * 2**20
-"""Of a file, unpacked."""
+"""[byte] The most that a file may hold, unpacked."""
 
 
 def read_link(path: Path, how: How) -> MeasuredLink:
     """What the file tells of a link, in ticks of `how.interval`, or one a measurement.
 
-    Raises LinkFileError: nothing is known in it, or what it is cannot be read.
+    Raises LinkFileError: nothing is known in it, or what it is cannot be read; MissingExtraError.
     """
     measured = _read(path, how)
     if (problem := problem_of(measured)) is not None:

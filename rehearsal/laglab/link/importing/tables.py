@@ -9,10 +9,10 @@ from laglab.link.errors import LinkFileError
 from laglab_gateway import ExtraDelay
 
 SCALE = 8192
-"""In a table, a standard deviation."""
+"""What stands in a table for one standard deviation."""
 QUANTILES = 65
 MOST = 2**15
-"""Of what stands in a table: netem has 16 bits for it."""
+"""Numbers in a table are smaller: netem has 16 bits for each."""
 
 
 def numbers_of(text: str) -> list[int] | None:

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 
 MOST_DRIFT = 2e-4
-"""Of two clocks against each other: a steeper line is no drift, but too few frames."""
+"""The most that two clocks drift apart [s/s]: a steeper line is no drift, but too few frames."""
 TINY = 1e-9
 """[s]"""
 
@@ -57,7 +57,7 @@ class Clocks(NamedTuple):
 
 
 def seen_by_clocks(ours: ClockTimes, theirs: ClockTimes, within: float | None) -> Clocks:
-    """The delays each way; `within` [s]: so far the clocks agree, None where that is not known."""
+    """The delays each way; the clocks agree within `within` [s], None where that is not known."""
     if within is not None:
         told = [times.apart[~np.isnan(times.apart)] for times in (ours, theirs)]
         least = min(float(each.min()) for each in told if len(each)) if any(map(len, told)) else 0.0

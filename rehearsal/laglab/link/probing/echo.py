@@ -8,7 +8,7 @@ from laglab.link.probing.sizes import filler_for, real_sizes
 from laglab_protocol import STATION_SYSTEM, Codec, Frame, Listener, Probe, Refusals
 
 IDLE = 0.5
-"""[s] So long is listened at a time."""
+"""[s] The longest that it listens at a time."""
 
 
 def echo(link: Listener, codec: Codec, tell: Callable[[str], None]) -> None:

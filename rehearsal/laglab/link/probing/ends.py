@@ -8,18 +8,18 @@ from laglab.link.probing.clocks import ClockTimes
 from laglab_protocol import NO_PROBE, PROBE_LAGS, Probe
 
 SHORTEST = 1000
-"""[us] No probe is answered more often."""
+"""[us] The shortest interval at which probes are answered."""
 SESSIONS = 2**32
 KEPT = 2 * PROBE_LAGS[-1]
 """Arrivals."""
 FORGOTTEN = 1.0
-"""[s] Without a probe for so long a session is over, and for so many intervals:"""
+"""[s] A session is over when no probe came for this long, and for MISSED intervals,"""
 MISSED, LONGEST = 3, 10_000_000
-"""Of intervals no longer than this [us]."""
+"""each counted as LONGEST [us] at most."""
 
 
 def following(session: int) -> int:
-    """The next number."""
+    """The number of the measurer's next session."""
     return (session + 1) % SESSIONS
 
 
@@ -53,7 +53,7 @@ class ProbeEnd:
         return self._came[number - oldest]
 
     def hear(self, probe: Probe, now_ns: int) -> None:
-        """One of the other end, of this session."""
+        """Take a probe of the other end, of this session."""
         self.heard += 1
         self._came.append((probe.sequence, now_ns))
 
@@ -115,7 +115,7 @@ class Prober:
         self.end = ProbeEnd(session, interval_us, filler)
         self.count = count
         self.answered = 0
-        """Of the first `count` of the other end's."""
+        """How many of the other end's first `count` probes were heard."""
         self._sent: list[int] = []
         self._came: dict[int, int] = {}
         self._heard: dict[int, tuple[int, int]] = {}
@@ -143,7 +143,7 @@ class Prober:
         return self.end.say(now_ns)
 
     def hear(self, probe: Probe, now_ns: int) -> None:
-        """One of the other end's; those of another session are passed over."""
+        """Take a probe of the other end; those of another session are passed over."""
         if probe.session != self.end.session or probe.sequence in self._heard:
             return
         self._heard[probe.sequence] = probe.time_ns, now_ns
@@ -157,7 +157,7 @@ class Prober:
             self._round_trip = max(self._round_trip, there)
 
     def is_done(self, now_ns: int) -> bool:
-        """Whether nothing more is to be learnt, or enough was waited for it [s]."""
+        """Whether nothing more is to be learnt, or it was waited for long enough."""
         if self.end.said < self.count:
             return False
         if self.told == self.count == self.answered:

@@ -15,7 +15,7 @@ from laglab.link.probing.sizes import Sizes, filler_for, overload, real_sizes
 from laglab_protocol import PROBE_LAGS, ROBOT_SYSTEM, Codec, Listener, Probe, Refusals
 
 LEAST_ASKED = 0.02
-"""[s] Before anybody has answered, no more often than that."""
+"""[s] The shortest interval of probes before anybody has answered."""
 
 
 class ProbePlan(NamedTuple):
@@ -26,9 +26,9 @@ class ProbePlan(NamedTuple):
     interval: float
     """[s] From one to the next."""
     wait: float
-    """[s] So long somebody must answer."""
+    """[s] Within which somebody must answer."""
     within: float | None
-    """[s] So far the two clocks agree; None: that is not known."""
+    """[s] Within which the two clocks agree; None: that is not known."""
 
 
 class _Talk:
@@ -136,8 +136,8 @@ def _measured(prober: Prober, plan: ProbePlan, sizes: Sizes) -> MeasuredLink:
 
 
 def hidden_arrivals(clocks: Clocks) -> float:
-    """How many commands came, as is to be expected, of which nothing that tells of them came: as
-    if frames were lost each by itself."""
+    """How many commands probably came though no report of them did, if each frame is lost by
+    itself."""
     lost = float(np.isnan(clocks.theirs).mean()) ** len(PROBE_LAGS)
     told = int(np.sum(~np.isnan(clocks.ours)))
     return told * lost / (1 - lost) if lost < 1 else 0.0

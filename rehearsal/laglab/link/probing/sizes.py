@@ -53,7 +53,7 @@ def real_sizes(sender: Sender) -> Sizes:
 
 
 def filler_for(sender: Sender, size: int) -> tuple[int, ...]:
-    """What makes a probe of this sender so many bytes long."""
+    """The filler that makes a probe of this sender `size` [byte] long, as nearly as it can."""
     shortest = len(sender.sibling().frame(Probe(0, NEVER, 0, 0, 0, NONE, _ones(0))))
     return _ones(min(max(size - shortest, 0), PROBE_FILLER))
 
@@ -63,7 +63,7 @@ def _ones(count: int) -> tuple[int, ...]:
 
 
 def overload(url: str, sizes: Sizes, interval: float) -> str | None:
-    """In a line, that a serial port carries less than such frames are; None where it carries
+    """Says in a line that a serial port carries less than such frames need; None where it carries
     them, or is no serial port."""
     match = BAUD.search(url)
     fullest = max(sizes) * BITS_PER_BYTE / interval

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from laglab.results.run import Run
 
 WIDTH, HEIGHT, BELOW = 5.6, 2.6, 1.1
-"""[inch] Of the whole, of the paths, of what is below them."""
+"""[inch] The width of the whole, the heights of the paths and of what is below them."""
 DOTS_PER_INCH = 96
 FRAMES_PER_SECOND = 10
 MOST_FRAMES = 150
@@ -35,7 +35,7 @@ HELD = 12
 ROBOT = np.array([[1.0, 0.0], [-0.7, 0.6], [-0.4, 0.0], [-0.7, -0.6]])
 """Seen from above, heading along x."""
 SIZE = 0.055
-"""Of the robot, in parts of the panel."""
+"""The robot's size, as a share of the panel's."""
 
 
 def animation_place(path: Path) -> Path:

@@ -20,11 +20,11 @@ COMPONENTS = ("x [m]", "y [m]", "θ [rad]")
 ERRORS = ("x error [m]", "y error [m]", "θ error [rad]")
 SPEEDS = {"v": "v [m/s]", "omega": "ω [rad/s]"}
 ROOM = 1.2
-"""How much larger than what is in it a panel is."""
+"""How many times as large as what is in it a panel is."""
 MOST_SHOWN = 1e9
-"""Beyond that an estimate is of no use, and no axis either."""
+"""An estimate beyond that is of no use, nor is an axis that long."""
 MARKERS = 9
-"""On a line, so that it is known in grey too."""
+"""How many are on a line, so that it is known in grey too."""
 
 
 def draw_component(axes: Axes, shown: Shown, i: int) -> None:
@@ -47,7 +47,7 @@ def draw_measured(axes: Axes, x: ArrayLike, y: ArrayLike) -> None:
 
 
 def draw_dots(axes: Axes, x: ArrayLike, y: ArrayLike, name: str) -> None:
-    """So many that they are a picture, not shapes, in a file of shapes too."""
+    """Drawn as pixels even in a vector file: there may be thousands."""
     axes.plot(
         x,
         y,

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 
 class Picture(Figure):
-    """Made without pyplot, whose state is global; so it has to say itself what it looks like."""
+    """Made without pyplot, whose state is global; so it has to say by itself what it looks like."""
 
     def _repr_png_(self) -> bytes:
         png = BytesIO()

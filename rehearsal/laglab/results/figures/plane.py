@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 HEADINGS = 12
-"""So many arrows along a path."""
+"""Arrows along a path."""
 TURN = 0.1
-"""[m/rad] How much of a path is a turn on the spot."""
+"""[m/rad] As how long a way a turn on the spot counts."""
 MARGIN = 0.08
 SMALLEST = 0.05
 """[m] Half of what is shown at least: of a robot that stands, noise is not to fill the panel."""
@@ -77,7 +77,7 @@ def draw_headings(axes: Axes, poses: Array, color: str = BLACK) -> None:
 
 
 def along(poses: Array, count: int) -> NDArray[np.intp]:
-    """The rows of so many poses, at most, equally far apart along the path."""
+    """The rows of at most `count` poses, equally far apart along the path."""
     steps = np.hypot(*np.diff(poses[:, :2], axis=0).T)
     steps += TURN * np.abs(np.diff(poses[:, 2]))
     way = np.concatenate([[0.0], np.cumsum(steps)])

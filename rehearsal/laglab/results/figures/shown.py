@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 MINUTES, HOURS = 600.0, 3 * 3600.0
-"""[s] Runs that last longer are told in these."""
+"""[s] Runs that last longer are told in minutes, or in hours."""
 
 
 class Clock(NamedTuple):
@@ -42,7 +42,7 @@ class Clock(NamedTuple):
 
 
 def clock(duration: float) -> Clock:
-    """For a run that lasts so long [s]."""
+    """The one for a run of this `duration` [s]."""
     if duration > HOURS:
         return Clock(3600.0, "h")
     return Clock(60.0, "min") if duration > MINUTES else Clock(1.0, "s")

@@ -37,7 +37,7 @@ CAUSES = {
 }
 """How a message that was lost or refused is marked."""
 LANE = 0.16
-"""The height of a lane of marks, in parts of the delays' height."""
+"""The height of a lane of marks, as a share of that of the delays."""
 
 
 def draw_delays(axes: Axes, shown: Shown, direction: str, bottom: bool = True) -> None:

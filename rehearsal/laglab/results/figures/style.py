@@ -63,7 +63,7 @@ PRINT = {
 MARK, LETTER = 0.4, 0.046
 """[inch] About the width of what stands beside a name in a legend, and of each of its letters."""
 LONGEST = 26
-"""Letters of a name."""
+"""The most letters of a name."""
 
 
 class Line(NamedTuple):
@@ -101,7 +101,7 @@ def printed() -> Iterator[None]:
 
 
 def sheet(width: float, height: float) -> Figure:
-    """So many inches to draw on."""
+    """A figure of this size [inch] to draw on."""
     from laglab.results.figures.picture import Picture
 
     return Picture(figsize=(width, height), layout="constrained")
@@ -113,8 +113,8 @@ def short(name: str) -> str:
 
 
 def legend(axes: Axes, across: float = 1.0) -> None:
-    """Above the panel, where it hides nothing: of what has a name, if anything has. `across` so
-    many panels, whose other ones have none."""
+    """Above the panel, where it hides nothing: of what has a name, if anything has. It may be
+    `across` panels wide, if the others have none."""
     handles, names = axes.get_legend_handles_labels()
     if not names:
         return

@@ -28,7 +28,7 @@ HEIGHTS = {"path": 1.25, "θ": 1.1, "command": 0.8, "measurement": 0.9}
 """[inch] Of a row, by the first of its panels."""
 USUAL = 1.0
 LANE = 0.1
-"""[inch] For each cause of losses."""
+"""[inch] What each cause of losses adds."""
 
 
 def title(scenario: Scenario) -> str:

@@ -136,14 +136,14 @@ def _settings(panels: Sequence[Panel]) -> Markup:
 
 
 def template(package: str, name: str) -> jinja2.Template:
-    """Of a page; whatever is put into it is text, unless it is said to be markup."""
+    """A page's template; whatever is put into it is text, unless it is said to be markup."""
     return jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(
         text_of(package, name)
     )
 
 
 def policy_of(allowed: Mapping[str, str]) -> str:
-    """As a page states it."""
+    """The content security policy, as a page states it."""
     return "; ".join(f"{what} {where}" for what, where in allowed.items())
 
 
@@ -153,12 +153,12 @@ def text_of(package: str, name: str) -> str:
 
 
 def tagged(text: str) -> str:
-    """As a part of a page."""
+    """The script, as a part of a page."""
     return f"<script>{text}</script>"
 
 
 def bokeh_scripts() -> list[str]:
-    """All that its plots need."""
+    """The scripts that bokeh's plots need."""
     inline = Resources(mode="inline", components=["bokeh"], log_level="error")
     return [tagged(text) for text in inline.js_raw]
 

@@ -42,7 +42,7 @@ HEIGHT = 210
 
 @dataclass
 class Axes:
-    """What the runs of a page share: the time, and of each kind of plot what it shows."""
+    """What the runs of a page share: an axis of time, and one of values for each kind of plot."""
 
     time: DataRange1d = field(default_factory=lambda: DataRange1d(range_padding=0.01))
     of: dict[str, DataRange1d] = field(default_factory=dict)
@@ -100,7 +100,7 @@ def time_plots(
 def _plot(
     axes: Axes, title: str, values: FactorRange | None = None, height: int = HEIGHT
 ) -> figure:
-    """Of its kind, which the title says; on its own values, or those given."""
+    """An empty one; its title says its kind, whose axis of values it has unless one is given."""
     plot = figure(
         title=heading(title),
         height=height,
@@ -117,7 +117,7 @@ def _plot(
 
 
 def heading(text: str) -> Title:
-    """Of a plot."""
+    """The title of a plot."""
     return Title(text=text, text_font_size="13px", text_font_style="normal", text_color=BLACK)
 
 

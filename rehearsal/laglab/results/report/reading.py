@@ -34,7 +34,7 @@ MOST_MARKS = 2_000
 
 
 def tables_of(run: Run, view: LinkView, most: int) -> Tables:
-    """With at most so many ticks. Raises: ResultsError, TraceError."""
+    """With at most `most` ticks. Raises: ResultsError, TraceError."""
     trace = thinned(run.drawn, stride(len(run.drawn["tick"]), most))
     every = stride(run.summary.ticks, most)
     claims = joined(_taken(run, CLAIMS_FILE, lambda each: at_ticks(each, trace["tick"])))
@@ -51,7 +51,7 @@ def tables_of(run: Run, view: LinkView, most: int) -> Tables:
 
 
 def _taken(run: Run, file: str, take: Callable[[Columns], Columns]) -> Iterator[Columns]:
-    """What is taken of each piece, and of none at least one."""
+    """What is taken of each piece, and first of an empty one, so that there is one at least."""
     yield take(columns_of([], ROWS[file]))
     for piece in run.table_pieces(file):
         yield take(piece)
@@ -75,7 +75,7 @@ def _worst(timing: Columns, sample_time: float, every: int) -> Columns:
 
 
 def _largest(columns: Columns, by: str, every: int) -> Columns:
-    """Of so many rows one, that which has the most: a peak stays when a run is thinned."""
+    """Of `every` rows the one that is largest in `by`: a peak stays when a run is thinned."""
     rows = len(columns[by])
     if every == 1 or rows == 0:
         return columns
@@ -99,5 +99,5 @@ def _marks_of(run: Run, view: LinkView) -> Columns:
 
 
 def _few(columns: Columns) -> Columns:
-    """Of thousands every so manyth."""
+    """Thinned, if there are thousands."""
     return thinned(columns, stride(len(columns["time"]), MOST_MARKS))

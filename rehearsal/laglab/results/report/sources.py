@@ -41,7 +41,7 @@ def sources_of(tables: Tables, run: int) -> Sources:
 
 
 def _small(columns: Columns) -> dict[str, NDArray[np.generic] | list[str]]:
-    """As exact as a screen is."""
+    """As exact as a screen can show."""
     return {name: _column(name, column) for name, column in columns.items()}
 
 

@@ -1,6 +1,6 @@
 """The plant that a scenario names, whoever made it: ours, somebody's FMU, somebody's class.
 
-`open_plant` makes it; all else in the house knows only what it does (`laglab_gateway.Plant`).
+`open_plant` makes it; all else in the package knows only what it does (`laglab_gateway.Plant`).
 """
 
 from laglab.runs.plant.opened import OpenPlant

@@ -43,7 +43,7 @@ class Watched:
         seed: int,
         options: Mapping[str, object],
     ) -> Self:
-        """Of that class. Raises PluginError: it cannot be made, or is no plant."""
+        """An object of that class. Raises PluginError: it cannot be made, or is no plant."""
         one = made(kind, maker_of(kind), sample_time, start, seed, **options)
         for method, parameters in METHODS.items():
             refuse_misfit(kind, one, method, *parameters)
@@ -75,7 +75,7 @@ class Watched:
 
 
 class BroughtPlant:
-    """The same as the gateway's plant, which is read once a tick. An error names the tick."""
+    """Somebody's object as the gateway's plant, read once a tick. An error names the tick."""
 
     def __init__(self, scenario: Scenario) -> None:
         """Raises PluginError: it cannot be made, or is no plant."""

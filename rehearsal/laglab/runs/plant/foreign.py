@@ -16,7 +16,7 @@ from laglab_fmu.parameters import INTEGRATIONS
 from laglab_gateway import Reading, UnplaceableError
 
 NEAR = 1e-9
-"""[m, rad] A start that is so near is the same."""
+"""[m, rad] Starts no further apart are the same."""
 MEASURED = tuple(f"{name}_meas" for name in POSE_NAMES)
 
 
@@ -71,7 +71,7 @@ def is_placeable(told: Wiring) -> bool:
 def start_values(
     told: Wiring, scenario: Scenario, pose: Sequence[float], placed: int = 0
 ) -> list[float]:
-    """Of what takes the start: the pose, and a seed that no placing before had."""
+    """For the variables that take the start: the pose, and a seed that no placing before had."""
     there = dict(zip(POSE_NAMES, pose, strict=True))
     there["seed"] = seed_of(scenario.seed, placed)
     return [there[name] for name in told.start]

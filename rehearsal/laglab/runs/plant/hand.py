@@ -22,7 +22,7 @@ class MovedByHand:
         return self._plant.read()
 
     def step(self, v: float, omega: float) -> None:
-        """One tick, at whose end somebody may be there."""
+        """One tick, at whose end somebody may move the robot."""
         self._plant.step(v, omega)
         self._tick += 1
         self._move()

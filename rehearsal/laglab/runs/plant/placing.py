@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 
 SEEDS, NEXT_SEED = 2**31, 7919
-"""How many seeds there are, and how far apart those of a run are, of which each placing takes one:
-not a neighbour, which is likely to be another run's."""
+"""How many seeds there are, and how far apart those are that a run's placings take: neighbours are
+likely to be other runs'."""
 
 Pose = tuple[float, float, float]
 
@@ -19,5 +19,5 @@ def pose_asked(asked: Sequence[float], start: Sequence[float]) -> Pose:
 
 
 def seed_of(seed: int, placed: int) -> int:
-    """That no placing before had; of the first `placed` is 1."""
+    """A seed that no placing before had; `placed` is 1 for the first placing."""
     return (seed + placed * NEXT_SEED) % SEEDS

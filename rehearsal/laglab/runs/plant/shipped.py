@@ -1,4 +1,4 @@
-"""The robot that ships, as the gateway's plant."""
+"""`robot`, the differential drive that ships, as the gateway's plant."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ class GaveUpError(LaglabError):
 @contextmanager
 def asked(name: str, target: str, order: Struct, patience: float) -> Iterator[Callable[[], Any]]:
     """The function `target` in a process of its own, which calls `answer_all`; each call gives its
-    next answer, for which it has so long [s].
+    next answer, for which it has `patience` [s].
 
     The calls raise NoAnswerError and GaveUpError.
     """

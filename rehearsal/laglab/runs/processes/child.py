@@ -28,9 +28,9 @@ from laglab.interrupts import INTERRUPTED, on_interrupt
 from laglab.runs.processes.reports import Ended, Report
 
 LAST_CHANCE = 2.0
-"""[s] A child that was asked to end is ended after so long."""
+"""[s] After this long a child that was asked to end is killed."""
 LOOK_UP = 0.5
-"""[s] So often a wait for reports looks up: not every system lets a Ctrl-C through it."""
+"""[s] How often a wait for reports looks up: not every system lets a Ctrl-C through it."""
 
 Tell = Callable[[Report], None]
 

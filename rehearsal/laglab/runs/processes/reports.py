@@ -31,7 +31,7 @@ class Listening(Struct, frozen=True, tag=True):
 
 
 class Progress(Struct, frozen=True, tag=True):
-    """The side has finished this tick, so long after the first [s]."""
+    """The side has finished this tick, `loop_seconds` [s] after the first."""
 
     tick: int
     loop_seconds: Annotated[float, Meta(ge=0)]

@@ -11,7 +11,7 @@ from laglab_gateway.values import Ticks, Whole, described
 from laglab_protocol import LONGEST_PLAN, UNKNOWN_DELAY
 
 Delay = Annotated[Ticks, Field(lt=UNKNOWN_DELAY)]
-"""As the two sides can tell each other."""
+"""[ticks] Within what the two sides can tell each other."""
 
 
 def _readable(log: Path) -> Path:

@@ -14,7 +14,7 @@ from laglab_control.plugins import Group
 
 
 def known(group: Group, name: str, shipped: Iterable[str]) -> str:
-    """The name. Raises ValueError, listing them, when there is none like it."""
+    """The name. Raises ValueError, listing those that there are, when it is none of them."""
     if name in shipped or is_module_class(name):
         return name
     if name in _installed(group):
@@ -25,17 +25,17 @@ def known(group: Group, name: str, shipped: Iterable[str]) -> str:
 
 @cache
 def _installed(group: Group) -> list[str]:
-    """A study asks as often as it has cells."""
+    """Looked up once: a study asks as often as it has cells."""
     return sorted(entry_points(group=group).names)
 
 
 def known_estimator(name: str) -> str:
-    """The same of an estimator."""
+    """The name of an estimator. Raises ValueError."""
     return known("laglab.estimators", name, ESTIMATORS)
 
 
 def known_law(name: str) -> str:
-    """The same of a law."""
+    """The name of a law. Raises ValueError."""
     return known("laglab.laws", name, LAWS)
 
 

@@ -28,7 +28,7 @@ SHIPPED = {
 """The robots that come with the package, and what each is."""
 POSE_NAMES = ("x", "y", "theta")
 Name = Annotated[str, Field(strict=True, min_length=1)]
-"""Of a variable of the FMU; an element of an array is `NAME[0]`."""
+"""A variable's name in the FMU; an element of an array is `NAME[0]`."""
 
 
 def _flat(tables: object, above: str = "") -> Any:
@@ -239,5 +239,5 @@ class PlantTable(Table):
 
     @property
     def called(self) -> str:
-        """In a word."""
+        """Its name, for messages."""
         return self.fmu.name if self.fmu is not None else self.kind

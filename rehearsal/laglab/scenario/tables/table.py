@@ -19,7 +19,7 @@ class OptionsTable(dict[str, object]):
     """Keyword arguments of what somebody brought; what can be written in TOML."""
 
     def __hash__(self) -> int:  # type: ignore[override]
-        """As all of a scenario has one."""
+        """All of a scenario can be hashed."""
         return hash(repr(sorted(self.items())))
 
 

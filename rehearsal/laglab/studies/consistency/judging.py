@@ -65,7 +65,7 @@ class Average(NamedTuple):
 
     @property
     def inside(self) -> float:
-        """The share of the ticks at which the average is within the bounds for so many seeds."""
+        """The share of the ticks at which the average is within the bounds for its seeds."""
         low, high = np.array([chi_square_bounds(int(n)) for n in self.seeds]).T
         within = (low <= self.values) & (self.values <= high)
         return float(mean_of_known(np.where(self.seeds == 0, np.nan, within)))
@@ -106,7 +106,7 @@ class Verdict(NamedTuple):
 
 @cache
 def chi_square_bounds(seeds: int) -> tuple[float, float]:
-    """Between which the average of NEES or NIS over the seeds lies with 95 % probability."""
+    """Between which an average of NEES or NIS over `seeds` lies at 95 %; NaN without seeds."""
     if seeds == 0:
         return np.nan, np.nan
     degrees = DEGREES * seeds

@@ -1,4 +1,4 @@
-"""Runs that differ only in seed and start, all at once: the fleet FMU, and a batch of controllers.
+"""Runs that differ only in seed, start and link, all at once: the fleet FMU, many controllers.
 
 The order of a tick is that of docs/tick.md, the numbers are those of the runs one by one. Where the
 link does more than delay, what happens when is found out first, seed by seed (`schedule`).

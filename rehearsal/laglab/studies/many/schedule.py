@@ -106,7 +106,7 @@ class _Robot:
         return due
 
     def hear(self, tick: int, asks: Iterable[Recall]) -> None:
-        """The command of this tick, of speeds that make a share of the speeds that are in force."""
+        """The command of this tick, of speed 1: what of it is in force is then its share."""
         self._commands.push(tick, Command(1.0, 1.0, tick, *ROBOT, estimates=0))
         for ask in asks:
             self._commands.push(tick, ask)

@@ -51,7 +51,8 @@ def telling(runs: StudyRuns) -> list[Told]:
 
 
 def margins(runs: StudyRuns, chosen: Layout, into: Sorted) -> list[Plane]:
-    """A panel each; none where it is not on the map, or not one for all runs of a cell."""
+    """The delay margin for each panel; none where it is not on the map, or the runs of a cell have
+    different ones."""
     x, y, key = chosen.x, chosen.y or "", chosen.panels
     if not _is_polar(runs, (x, y, key, *chosen.averaged)):
         return []
@@ -65,7 +66,7 @@ def margins(runs: StudyRuns, chosen: Layout, into: Sorted) -> list[Plane]:
 
 
 def _line_margin(runs: StudyRuns, chosen: Layout) -> Scenario | None:
-    """What it is drawn for, where one line is that of all."""
+    """The scenario whose margin is drawn, where one line holds for all runs."""
     others = (chosen.panels, *chosen.averaged)
     if not _is_polar(runs, (chosen.x, *others)):
         return None

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 CELL = (0.66, 0.42)
-"""[inches] Of a cell in which numbers can be read."""
+"""[inches] The least of a cell in which numbers can be read."""
 LEAST, MOST = 1.8, 5.0
 """[inches] Sides of a panel."""
 WIDE = 10.0

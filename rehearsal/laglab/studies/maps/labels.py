@@ -19,7 +19,7 @@ NAMES = {
     "link.measurement.extra_delay.mean": "jitter of measurements, mean [s]",
 }
 MOST_TICKS = 12
-"""Labels along one side."""
+"""The most labels along one side."""
 
 
 def key_label(key: str) -> str:

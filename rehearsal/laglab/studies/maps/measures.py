@@ -63,7 +63,7 @@ NONE = Estimate(math.nan, math.nan, math.nan)
 
 
 def share(yes: int, of: int) -> Estimate:
-    """With Wilson's interval, which also holds near 0 and 1."""
+    """The share, with Wilson's interval, which also holds near 0 and 1."""
     if not of:
         return NONE
     p, z = yes / of, Z**2 / of
@@ -74,8 +74,8 @@ def share(yes: int, of: int) -> Estimate:
 
 
 def median(values: NDArray[np.float64]) -> Estimate:
-    """With the interval between two order statistics, whatever the distribution: the ranks are
-    the binomial's, by its normal approximation."""
+    """The median, with the interval between two order statistics, whatever the distribution: the
+    ranks are the binomial's, by its normal approximation."""
     known = np.sort(values[np.isfinite(values)])
     if not len(known):
         return NONE
@@ -102,8 +102,8 @@ class Told(NamedTuple):
 
     @classmethod
     def by(cls, runs: StudyRuns, column: str) -> Told:
-        """A column's; `diverged` needs none. Raises: StudyError, when there is none, or it has no
-        numbers."""
+        """That of a column; `diverged` needs none. Raises: StudyError, when there is none, or it
+        has no numbers."""
         of, diverged = measure(column), runs.diverged
         if column == "diverged":
             return cls(of, diverged.astype(np.float64), diverged)

@@ -37,11 +37,11 @@ NOTHING = "#cccccc"
 HALF = 128
 """Of the brightness that a screen has."""
 MOST_WRITTEN = 12
-"""Columns of a map in whose cells numbers can be read."""
+"""A map of more columns has no room for numbers in its cells."""
 
 
 def save_study_page(study: Study, folder: Path, lines: Sequence[str], path: Path) -> None:
-    """What has been computed of it, and `lines` on how it went.
+    """The page of what has been computed, with `lines` on how it went.
 
     Raises: ResultsError, StudyError, when there is nothing to draw along.
     """

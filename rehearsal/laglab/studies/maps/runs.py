@@ -74,7 +74,7 @@ class Layout(NamedTuple):
 
     x: str
     y: str | None
-    """None: there is only one to draw along."""
+    """None: there is only one key to draw along."""
     panels: str | None
     averaged: tuple[str, ...]
 

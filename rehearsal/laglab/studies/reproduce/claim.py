@@ -29,7 +29,7 @@ class Verdict(Enum):
 
 
 def never(numbers: Numbers) -> bool:
-    """The criterion of what cannot be met."""
+    """A criterion that is never met."""
     del numbers
     return False
 

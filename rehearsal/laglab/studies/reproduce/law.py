@@ -31,7 +31,7 @@ def right_wheel_alone() -> Evidence:
 
 
 def many_starts() -> Evidence:
-    """Without delay, filter and noise."""
+    """The law from many starts, without delay, filter and noise."""
     runs = on_grid("law", "fig4", {}, STARTS)
     settled = runs.number("settled_s")
     return Evidence(

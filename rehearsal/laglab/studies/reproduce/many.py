@@ -15,7 +15,7 @@ from laglab.studies.reproduce.showing import P_0, M, N, on_grid, png
 DELAYS = (0, 10, 25, 50)
 STARTS = 3
 PRIORS = (1e-4, 3e-4, 1e-3, 2e-3, 5e-3, 9e-3)
-"""[m², rad²] R is 1e-2 m² and 1.8e-2 rad²."""
+"""[m², rad²] All below R, which is 1e-2 m² and 1.8e-2 rad²."""
 SEEDS = 6
 WITHOUT_NOISE = "popf without noise"
 WITH_NOISE = "popf with noise and goal tolerance"
@@ -38,7 +38,7 @@ def starts_and_delays(name: str, overrides: Overrides) -> Evidence:
 
 
 def noisy() -> Evidence:
-    """With the law as it is, and with a goal tolerance."""
+    """The same with noise: with the law as it is, and with a goal tolerance."""
     bare, tolerant = (starts_and_delays(*each) for each in (("", NOISE), (WITH_NOISE, TOLERANT)))
     numbers = {f"tolerant_{name}": value for name, value in tolerant.numbers.items()}
     return Evidence(numbers | bare.numbers, tolerant.picture)

@@ -15,7 +15,7 @@ from laglab.studies.judged import judged_run
 from laglab.studies.workers import shared_out
 
 PLAN = 45
-"""[ticks] So far the plans reach: their frames still fit into one datagram."""
+"""[ticks] How far the plans reach: their frames still fit into one datagram."""
 IN_TIME = 0.99
 """The share of the frames that are to come before the bound of the play-out."""
 MOST_TRIED = 5000
@@ -97,7 +97,7 @@ class Outcome(Struct, frozen=True):
 
 
 def links_of(scenario: Scenario) -> dict[str, Overrides]:
-    """On which they meet: all, and the scenario's own."""
+    """On which they meet: LINKS, and the scenario's own where that is not ideal."""
     own: dict[str, Overrides] = {OWN_LINK: {}} if link_fates(scenario) else {}
     return {**LINKS, **own}
 
@@ -123,7 +123,7 @@ def _met(scenario: Scenario, link: Overrides, strategy: str, number: int) -> Sce
 
 
 def bounds(scenario: Scenario) -> Overrides:
-    """Of a play-out that all but a hundredth of the frames that get through are in time for."""
+    """Of a play-out for which all but a hundredth of the frames that get through are in time."""
     Ts, link = scenario.sample_time, scenario.link
     own = {"command": link.command_delay, "measurement": link.measurement_delay}
     fates = link_fates(scenario)

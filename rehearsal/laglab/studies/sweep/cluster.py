@@ -20,7 +20,7 @@ PATIENCE = 5.0
 
 @contextmanager
 def cluster(address: str, workers: int = 0) -> Iterator[Executor]:
-    """The workers of the scheduler at this address, or of one that is started for the while.
+    """The workers of the scheduler at this address, or of one that is ours and gone at the end.
 
     Raises: MissingExtraError; RefusedError: nobody answers there.
     """
@@ -43,7 +43,7 @@ def cluster(address: str, workers: int = 0) -> Iterator[Executor]:
 
 
 def _look_for(address: str) -> None:
-    """Whether a scheduler is there; where nobody listens, dask itself would try again and again."""
+    """Raises RefusedError where no scheduler is: dask itself would try again and again."""
     parts = urlsplit(address)
     try:
         if parts.scheme not in SCHEMES or not parts.hostname or not parts.port:
@@ -58,7 +58,7 @@ def _look_for(address: str) -> None:
 
 
 async def _greet(address: str) -> None:
-    """To somebody else, who listens there, `Client` would talk for ever."""
+    """Fails where something else listens, to which `Client` would talk for ever."""
     from distributed.comm.core import connect
 
     comm = await connect(address, timeout=PATIENCE)

@@ -24,7 +24,7 @@ from laglab.studies.sweep.study import Study
 STUDY_FILE = "study.toml"
 CELLS = "cells"
 ABANDONED = 3600.0
-"""[s] What has been half written for so long, nobody will finish."""
+"""[s] A file half written longer ago than this nobody will finish."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Folder:
         return study_of(text, str(self._study), self.path / f"{self.path.resolve().name}.toml")
 
     def file(self, cell: Cell) -> Path:
-        """Where it is, if it is there."""
+        """Where it is, or would be."""
         return self.cells / f"{cell.key}.parquet"
 
     def has(self, cell: Cell) -> bool:

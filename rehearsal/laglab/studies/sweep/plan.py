@@ -31,13 +31,13 @@ class Plan(NamedTuple):
 
     @property
     def runs(self) -> int:
-        """All of them."""
+        """How many are still to be done."""
         return self.ways.total()
 
 
 def planned(study: Study, folder: "Folder | None" = None) -> Plan:
-    """Of the study's cells, those that are not in the folder. Raises StudyError: a cell's scenario,
-    wherever it is, cannot be."""
+    """The study's cells that are not in the folder, summed up. Raises StudyError: a cell, in the
+    folder or not, cannot be run."""
     ways: Counter[How] = Counter()
     cost = 0.0
     tried = set[tuple[PlantTable, float]]()
@@ -54,7 +54,7 @@ def planned(study: Study, folder: "Folder | None" = None) -> Plan:
 
 
 def _check_robot(study: Study, cell: Cell) -> None:
-    """Raises StudyError: it cannot be had, or not so."""
+    """Raises StudyError: its plant cannot be had, or not with these keys."""
     try:
         check_plant(cell.scenario)
     except SIDE_ERRORS as error:

@@ -12,7 +12,7 @@ MOST_NAMED = 3
 
 
 def summary(study: Study, folder: Folder, plan: Plan) -> str:
-    """A few lines."""
+    """How it went, in a few lines."""
     runs = converged = diverged = 0
     for table in folder.tables(study.cells(), ["converged", "diverged_tick"]):
         runs += table.num_rows

@@ -59,7 +59,7 @@ class StudyResult:
 
     def map(self, x: str, y: str, value: str) -> pandas.DataFrame:
         """A row for each value of the column `y`, a column for each of `x`; there, the mean of
-        `value` over the rest of the grid and the seeds, of a truth the share in which it holds.
+        `value` over the rest of the grid and the seeds, of a column of yes or no the share of yes.
 
         Needs pandas. Raises: NoRunError; StudyError: there is no such column.
         """
@@ -76,7 +76,7 @@ class StudyResult:
         return pa.concat_tables(tables)
 
     def _check(self, columns: list[str]) -> None:
-        """Against any of the tables."""
+        """Raises StudyError: there is no such column in the first table, which is like all."""
         some = next(self.tables(), None)
         known = [] if some is None else some.column_names
         for name in columns:

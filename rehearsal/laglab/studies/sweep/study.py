@@ -19,7 +19,7 @@ from laglab_control import FAR
 from laglab_control.plugins import Group, source_of
 
 MOST_SEEDS = 250
-"""Of one cell: as many runs as are one task, with or without a batch."""
+"""Of one cell: enough for a task of its own, in a batch or not."""
 
 
 @dataclass(frozen=True)
@@ -56,16 +56,16 @@ class Study:
 
     @property
     def points(self) -> int:
-        """Of the grid."""
+        """How many the grid has."""
         return math.prod(len(values) for values in self.grid.values())
 
     @property
     def runs(self) -> int:
-        """All of them."""
+        """How many there are."""
         return self.points * len(self.seeds)
 
     def cells(self, origin: str | None = None) -> Iterator[Cell]:
-        """One after the other; `origin`, where it is not of here and now, as a folder has it."""
+        """One after the other; `origin`: a folder's, where that is not the one of this code."""
         origin, base = origin or self.origin, self._base
         for values in product(*self.grid.values()):
             grid = dict(zip(self.grid, values, strict=True))
@@ -86,7 +86,7 @@ class Study:
         return changed(self.scenario, silent).to_toml()
 
     def _files(self) -> Iterator[tuple[str, str]]:
-        """That the scenarios name, and a hash of each."""
+        """Those that the scenarios name, and a hash of each."""
         fields = self.scenario.fields()
         for table, key in (*FILES, ("law", "path")):
             of_base, of_grid = fields[table].get(key), self.grid.get(f"{table}.{key}", ())

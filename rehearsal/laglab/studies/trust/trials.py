@@ -23,7 +23,7 @@ STOCK = ("delayed-ekf", "popf", "ekf")
 MOVED_AT = 5.0
 """[s] When somebody moves the robot by half a metre."""
 LOOKED_AT_AFTER = 2.0
-"""[s] So long after the first alarm the error is looked at."""
+"""[s] How long after the first alarm the error is looked at."""
 
 
 JITTER = {"distribution": "exponential", "mean": 0.05}

@@ -14,7 +14,7 @@ from laglab.studies.sweep.cells.ways import crowd, seconds
 from laglab.version import code_version
 
 WORTHWHILE = 0.1
-"""[s] A task takes so long or longer, where there are cells enough."""
+"""[s] The least that a task takes, where there are cells enough."""
 MOST_CELLS = 100
 
 

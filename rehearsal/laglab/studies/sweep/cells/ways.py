@@ -10,13 +10,13 @@ from laglab.studies.sweep.cells.cell import Cell
 from laglab.studies.sweep.cells.one_by_one import one_by_one
 
 TICK_ALONE = 160e-6
-"""[s] A tick of a run by itself takes about so long, with both sides and the bytes between them."""
+"""[s] About what a tick of a run by itself takes: both sides, and the bytes between them."""
 TICK_OF_A_BATCH, TICK_IN_A_BATCH = 400e-6, 0.8e-6
 """[s] A tick of however many robots, and what each of them adds."""
 TICK_IMPAIRED = 75e-6
 """[s] A tick of one robot of many on an impaired link, its schedule included."""
 CROWD = 200
-"""Robots on impaired links: more of them would not be cheaper any more."""
+"""Robots on impaired links: with more of them, each costs no less."""
 RUN_ALONE = 0.02
 """[s] Until the sides of a run are there."""
 
@@ -45,7 +45,7 @@ def judged(cells: Sequence[Cell]) -> list[Judgements]:
 
 
 def crowd(cell: Cell) -> int:
-    """So many robots, of this cell and of others, are worth to be computed together."""
+    """How many robots, of this cell and of others, are worth computing together."""
     return CROWD if how(cell).batch and not is_ideal(cell.scenario) else 1
 
 
