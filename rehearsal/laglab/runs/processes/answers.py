@@ -21,7 +21,7 @@ class NoAnswerError(LaglabError):
 
 
 class GaveUpError(LaglabError):
-    """What somebody brought cannot be had, or not so; the text says why."""
+    """What somebody brought cannot be loaded, or not be made as told; the text says why."""
 
     exit_code = 2
 
