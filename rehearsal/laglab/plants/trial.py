@@ -112,8 +112,7 @@ def _in_a_child(scenario: Scenario) -> Drive:
     except GaveUpError as error:
         raise PlantCheckError(str(error)) from None
     except NoAnswerError as error:
-        called = scenario.plant.called
-        raise PlantCheckError(f"{called}, driven for {2 * PHASE:g} s: {error}") from None
+        raise PlantCheckError(f"{scenario.plant.called}: {error}") from None
     return driven
 
 
