@@ -78,6 +78,7 @@ def _own(workers: int) -> Any:
     return distributed.LocalCluster(
         n_workers=workers or cores(),
         threads_per_worker=1,
-        dashboard_address=None,
+        dashboard_address="127.0.0.1:0",  # without one it would take a fixed port, and warn
+        scheduler_kwargs={"dashboard": False},
         silence_logs=logging.CRITICAL,
     )
