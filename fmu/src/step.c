@@ -62,10 +62,14 @@ static void keep(Instance *instance) {
     memcpy(instance->before, instance->robot, instance->robots * sizeof *instance->robot);
 }
 
-static void undo(Instance *instance) {
-    Robot *moved = instance->robot;
+static void swap(Instance *instance) {
+    Robot *robot = instance->robot;
     instance->robot = instance->before;
-    instance->before = moved;
+    instance->before = robot;
+}
+
+static void undo(Instance *instance) {
+    swap(instance);
     instance->stale = true;
 }
 
@@ -116,24 +120,38 @@ static void step_by_samples(Instance *instance, double step, StepEnd *end) {
     }
 }
 
+/* What is there now stays, to be taken back to. One robot after the other, while it is at hand: many do not fit into a
+ * processor's cache. */
+static bool step_each(Instance *instance, double step) {
+    bool finite = true;
+    for (size_t i = 0; i < instance->robots; i++) {
+        Robot *robot = &instance->before[i];
+        *robot = instance->robot[i];
+        robot_step(robot, step);
+        robot_speeds(robot);
+        finite = robot_is_finite(robot) && finite;
+    }
+    swap(instance);
+    instance->stale = false;
+    return finite;
+}
+
 Status instance_step(Instance *instance, double start, double step, StepEnd *end) {
     *end = (StepEnd){false, false};
     if (check_step(instance, start, step) != STATUS_OK) {
         return STATUS_ERROR;
     }
     const double time = instance->time;
-    keep(instance);
-    instance->stale = true;
+    bool finite = false; /* not known yet */
     instance->time = start;
     if (instance->event_mode || instance->update) {
+        keep(instance);
         step_by_samples(instance, step, end);
     } else {
-        for (size_t i = 0; i < instance->robots; i++) {
-            robot_step(&instance->robot[i], step);
-        }
+        finite = step_each(instance, step);
         instance->time = start + step;
     }
-    if (instance_check_finite(instance) != STATUS_OK) {
+    if (!finite && instance_check_finite(instance) != STATUS_OK) {
         undo(instance);
         instance->time = time;
         *end = (StepEnd){false, false};

@@ -137,7 +137,7 @@ def _run(fleet: Fleet, scenario: Scenario, answer: Callable[[Pose], Answers], to
     return Ends(last_tick, diverged, unsure)
 
 
-PAGE = 32
+PAGE = 8
 """Ticks."""
 
 
