@@ -15,7 +15,7 @@ from laglab_control.batch.estimators import (
     Setting,
     WindowedEkf,
 )
-from laglab_control.batch.flight import Flight, applied_of, place_of, sent, take_off
+from laglab_control.batch.flight import Flight, place_of, sent, take_off
 from laglab_control.batch.guard import Found
 from laglab_control.batch.law import Demands, drive, limited, polar_law, stand_still
 from laglab_control.batch.matrices import Symmetric
@@ -113,7 +113,7 @@ class BatchController:
     def advance(self, control: BatchControl) -> BatchControl:
         """One tick later: the last commands are on their way, those n ticks older were applied."""
         flight = sent(self.config, control.flight, control.drive.speeds)
-        applied = applied_of(self.config, flight)
+        applied = flight.applied
         state = self._estimator.predict(control.estimator, applied)
         return control._replace(estimator=state, flight=flight)
 
@@ -124,7 +124,7 @@ class BatchController:
             state, compared = self._estimator.correct(state, z)
             if found is not None and compared is not None:
                 found = guard.looked_at(found, compared)
-        now = applied_of(self.config, flight)
+        now = flight.applied
         present = self._estimator.estimate(state, now)
         if present is None:
             return BatchControl(state, found, flight, stand_still(self.robots), lost)
@@ -140,7 +140,7 @@ class BatchController:
     ) -> Demands:
         (there, turn, P), config = present, self.config
         if self._predicts:
-            there, heading = place_of(config, flight, there, turn)
+            there, heading = place_of(flight, there, turn)
         else:
             heading = headings(there.theta)
         speeds, at_goal = drive(self._law, there, last.at_goal, None if self._exact else heading)

@@ -25,7 +25,6 @@ from laglab_control.batch.predicted import predicted
 from laglab_control.batch.robots import Compared, Robots, composed
 from laglab_control.batch.rows import Belief, Pose, Row, difference, headings, pose_of
 from laglab_control.motion import STILL, Motion
-from laglab_control.past.log import Log, append, logged
 from laglab_control.past.sliding import SlidingProduct
 
 
@@ -116,7 +115,7 @@ class Delayed(NamedTuple):
     there: Belief
     at: Leg
     turn: Turn
-    legs: Log[tuple[Leg, Spread]]
+    legs: tuple[tuple[Leg, Spread], ...]
     since: int
     """How many of `legs` lead from there to the present."""
     sums: Spread
@@ -133,19 +132,19 @@ class DelayedEkf(BatchEstimator[Delayed]):
     def start(self, belief: Belief) -> Delayed:
         at = at_origin(len(belief.x))
         turn = Turn.between(at, belief.theta)
-        return Delayed(belief, at, turn, logged(), 0, np.zeros((7, len(belief.x))), measured=False)
+        return Delayed(belief, at, turn, (), 0, np.zeros((7, len(belief.x))), measured=False)
 
     def predict(self, state: Delayed, leg: Leg) -> Delayed:
         there, at, turn, legs, since, sums, measured = state
         one = spread(self.setting.robots.model, leg)
-        legs = append(legs, (leg, one), self.setting.measurement_delay + 1)
+        legs = (*legs, (leg, one))[-self.setting.measurement_delay - 1 :]
         return Delayed(there, at, turn, legs, since + 1, sums + one, measured)
 
     def correct(self, state: Delayed, z: Pose) -> tuple[Delayed, Compared]:
         there, at, turn, legs, since, sums, measured = state
         robots = self.setting.robots
         if measured:
-            at, one = legs.items[legs.length - since]
+            at, one = legs[-since]
             there = predicted(robots.model, there, turn.of(at.before), at.u)
             since, sums = since - 1, sums - one
         there, compared = robots.correct(there, z)
@@ -165,7 +164,7 @@ class Paper(NamedTuple):
     belief: Belief
     left: Square
     """I - K_k."""
-    priors: Log[Belief]
+    priors: tuple[Belief, ...]
     window: SlidingProduct[None, Square]
     length: int
 
@@ -179,7 +178,7 @@ class Popf(BatchEstimator[Paper]):
 
     def start(self, belief: Belief) -> Paper:
         window: SlidingProduct[None, Square] = SlidingProduct(_later_to_the_left, IDENTITY)
-        return Paper(belief, IDENTITY, logged(belief), window, length=0)
+        return Paper(belief, IDENTITY, (belief,), window, length=0)
 
     def predict(self, state: Paper, leg: Leg) -> Paper:
         before, left, priors, window, length = state
@@ -190,13 +189,13 @@ class Popf(BatchEstimator[Paper]):
         window = window.push(None, _stepped(distance * cosine, distance * sine, left))
         if length == m:
             window = window.pop()[1]
-        priors = append(priors, belief, m + 1)
+        priors = (*priors, belief)[-m - 1 :]
         return Paper(belief, IDENTITY, priors, window, min(length + 1, m))
 
     def correct(self, state: Paper, z: Pose) -> tuple[Paper, Compared]:
         belief, _, priors, window, length = state
         m, robots = self.setting.measurement_delay, self.setting.robots
-        prior = priors.items[priors.length - 1 - m]
+        prior = priors[-m - 1]
         P_s = covariance_of(prior)
         v, W = difference(z, pose_of(prior)), robots.weights(P_s)
         cross = matrices.whole(P_s)

@@ -9,21 +9,26 @@ from laglab_control.batch.robots import joined
 from laglab_control.batch.rows import Heading, Pose, Speeds, headings
 from laglab_control.controller import StationConfig
 from laglab_control.motion import NOWHERE, Way
-from laglab_control.past.log import Log, append, logged
 from laglab_control.past.sliding import SlidingProduct
 
 
 class Flight(NamedTuple):
     """All that is sent, and where what is in flight leads."""
 
-    legs: Log[Leg]
+    legs: tuple[Leg, ...]
+    """From the one that is in force on; no more, for a cache does not hold much of many robots."""
     way: SlidingProduct[None, Pose] | None
     """To the last bit; None: as the odometer has it."""
+
+    @property
+    def applied(self) -> Leg:
+        """The commands that were in force on the tick before the present."""
+        return self.legs[0]
 
 
 def take_off(config: StationConfig, robots: int, exact: bool) -> Flight:
     """Before the first commands the robots stand still."""
-    legs = logged(*[at_origin(robots)] * (config.command_delay + 1))
+    legs = (at_origin(robots),) * (config.command_delay + 1)
     if not exact:
         return Flight(legs, None)
     nowhere: Pose = Way(*[np.full(1, each) for each in NOWHERE])
@@ -36,24 +41,19 @@ def take_off(config: StationConfig, robots: int, exact: bool) -> Flight:
 def sent(config: StationConfig, flight: Flight, u: Speeds) -> Flight:
     """With the commands of a tick, and without those that come into force now."""
     legs, way = flight
-    legs = append(legs, driven(config.model, legs.newest, u), config.command_delay + 1)
+    legs = (*legs[1:], driven(config.model, legs[-1], u))
     if way is not None:
         Ts = config.model.sample_time
         _, way = way.push(None, Way(Ts * u.v, np.zeros(1), Ts * u.omega)).pop()
     return Flight(legs, way)
 
 
-def applied_of(config: StationConfig, flight: Flight) -> Leg:
-    """The commands that were in force on the tick before the present."""
-    return flight.legs.items[flight.legs.length - 1 - config.command_delay]
-
-
-def place_of(config: StationConfig, flight: Flight, pose: Pose, turn: Turn) -> tuple[Pose, Heading]:
+def place_of(flight: Flight, pose: Pose, turn: Turn) -> tuple[Pose, Heading]:
     """(29): where the robots will be when the commands that are now made come into force."""
-    then = flight.legs.newest
+    then = flight.legs[-1]
     if flight.way is not None:
         there = joined(pose, flight.way.product)
         return there, headings(there.theta)
-    way = turn.way(applied_of(config, flight), then)
+    way = turn.way(flight.applied, then)
     there = Way(pose.x + way.x, pose.y + way.y, pose.theta + way.theta)
     return there, turn.of(then.heading)

@@ -128,8 +128,9 @@ def _run(fleet: Fleet, scenario: Scenario, answer: Callable[[Pose], Answers], to
         answers = answer(Pose(*fleet.readings[:, 3:6].T.copy()))
         page.write(fleet.readings[:, :3].T, answers, diverged)
         unsure |= ~diverged & (answers.acts | refused(answers.sent, scenario.safety))
-        last_tick[answers.lost & ~diverged] = k
-        diverged |= answers.lost
+        if answers.lost.any():
+            last_tick[answers.lost & ~diverged] = k
+            diverged |= answers.lost
         if page.is_full or k == last:
             told(page.take())
         if k < last:
