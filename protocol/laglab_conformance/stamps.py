@@ -50,10 +50,25 @@ def _in_order(session: RobotSession) -> str | None:
 def _counts(session: RobotSession) -> str | None:
     if tick_comes_first(session):
         raise DoesNotApplyError("they come after it")
-    for batch, last in batches(session):
-        if len(batch) != last.measurements:
+    for (batch, last), lost in zip(batches(session), _lost(session), strict=True):
+        missing = last.measurements - len(batch)
+        if missing and not 0 < missing <= lost:
             return f"{last} came after {len(batch)} of them"
     return None
+
+
+def _lost(session: RobotSession) -> list[int]:
+    """Before every tick but the first, how many frames that the robot numbered did not come: a
+    line may lose some, and that is not the robot's fault."""
+    lost, missed, number = list[int](), 0, None
+    for frame in session.heard:
+        if (frame.system, frame.component) == session.peer:
+            missed += 0 if number is None else (frame.sequence - number - 1) & 0xFF
+            number = frame.sequence
+        if isinstance(frame.message, Tick):
+            lost.append(missed)
+            missed = 0
+    return lost[1:]
 
 
 def _echoes(session: RobotSession) -> str | None:
