@@ -20,7 +20,8 @@ class Driver:
     """Drives a robot that was met at its tick `first`.
 
     Met at tick 0, it starts where the station was told. Met later, it is taken over from a
-    standstill (`joining`), and the tick at which its pose is known becomes `first`.
+    standstill (`joining`), and the tick at which its pose is known becomes `first`; an estimator
+    that predicts nothing just goes on.
     """
 
     def __init__(
