@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import typer
 
 import laglab
-from laglab.command import app
+from laglab.command import app_of
 from laglab.errors import LaglabError
 from laglab.export.reference import page as topics
 from laglab.scenario.reference import GENERATED as OF_SCENARIOS
@@ -65,7 +65,7 @@ order in which they travel.
 
 def command_line() -> str:
     """Every command's help, as it is printed."""
-    return COMMAND_LINE + "".join(_commands(typer.main.get_command(app), "laglab"))
+    return COMMAND_LINE + "".join(_commands(typer.main.get_command(app_of()), "laglab"))
 
 
 def _commands(command: object, name: str) -> Iterator[str]:
@@ -105,7 +105,7 @@ def _of_component(name: str) -> str:
 
 def _tree(root: type, depth: int = 0) -> Iterator[tuple[int, type]]:
     yield depth, root
-    for kind in root.__subclasses__():
+    for kind in sorted(root.__subclasses__(), key=lambda each: each.__name__):
         yield from _tree(kind, depth + 1)
 
 

@@ -2,25 +2,14 @@
 
 import signal
 import sys
+from collections.abc import Iterable, Sequence
+from importlib import import_module
 from typing import Annotated
 
 import typer
 
 from laglab import __version__
-from laglab.commands import bench, link, protocol
 from laglab.commands.group import alone, group
-from laglab.commands.parts import check, estimators, fmu, new, plant, scenario, scenarios
-from laglab.commands.results import animate, compare, export, figure, report
-from laglab.commands.runs import replay, run, serial, sides, soak
-from laglab.commands.studies import (
-    consistency,
-    errata,
-    maps,
-    reproduce,
-    rivals,
-    sweep,
-    trust,
-)
 from laglab.errors import LaglabError, RunError, ScenarioError
 from laglab.interrupts import INTERRUPTED, on_interrupt
 from laglab.live import spelled_out
@@ -48,40 +37,61 @@ def laglab(context: typer.Context, version: VersionOption = False) -> None:
     alone(context)
 
 
-app = group(
-    "A rehearsal rig for robots controlled across a network.", callback=laglab, completion=True
-)
-app.command("run")(run.run)
-app.command("replay")(replay.replay)
-app.command("scenarios")(scenarios.scenarios)
-app.command("estimators")(estimators.estimators)
-app.command("laws")(estimators.laws)
-app.command("plants")(estimators.plants)
-app.command("check")(check.check)
-app.command("new")(new.new)
-app.command("scenario")(scenario.scenario)
-app.command("figure")(figure.figure)
-app.command("report")(report.report)
-app.command("compare")(compare.compare)
-app.command("export")(export.export)
-app.command("animate")(animate.animate)
-app.command("consistency")(consistency.consistency)
-app.command("trust")(trust.trust)
-app.command("rivals")(rivals.rivals)
-app.command("soak")(soak.soak)
-app.command("map")(maps.map_study)
-app.command("reproduce")(reproduce.reproduce)
-app.command("errata")(errata.errata)
-app.command("sweep")(sweep.sweep)
-app.command("gateway")(sides.gateway)
-app.command("controller")(sides.controller)
-app.command("serial")(serial.serial)
-app.add_typer(bench.app, name="bench")
-app.add_typer(fmu.app, name="fmu")
-app.add_typer(plant.app, name="plant")
-app.add_typer(link.app, name="link")
-app.add_typer(protocol.app, name="protocol")
-app.command("conform")(protocol.conform)
+COMMANDS = {
+    "run": "runs.run:run",
+    "replay": "runs.replay:replay",
+    "scenarios": "parts.scenarios:scenarios",
+    "estimators": "parts.estimators:estimators",
+    "laws": "parts.estimators:laws",
+    "plants": "parts.estimators:plants",
+    "check": "parts.check:check",
+    "new": "parts.new:new",
+    "scenario": "parts.scenario:scenario",
+    "figure": "results.figure:figure",
+    "report": "results.report:report",
+    "compare": "results.compare:compare",
+    "export": "results.export:export",
+    "animate": "results.animate:animate",
+    "consistency": "studies.consistency:consistency",
+    "trust": "studies.trust:trust",
+    "rivals": "studies.rivals:rivals",
+    "soak": "runs.soak:soak",
+    "map": "studies.maps:map_study",
+    "reproduce": "studies.reproduce:reproduce",
+    "errata": "studies.errata:errata",
+    "sweep": "studies.sweep:sweep",
+    "gateway": "runs.sides:gateway",
+    "controller": "runs.sides:controller",
+    "serial": "runs.serial:serial",
+    "bench": "bench:app",
+    "fmu": "parts.fmu:app",
+    "plant": "parts.plant:app",
+    "link": "link:app",
+    "protocol": "protocol:app",
+    "conform": "protocol:conform",
+}
+"""By name where each stands in `laglab.commands`: a function, or a group of more."""
+
+
+def app_of(names: Iterable[str] = COMMANDS) -> typer.Typer:
+    """The command with these subcommands, in the order in which help lists them."""
+    app = group(
+        "A rehearsal rig for robots controlled across a network.", callback=laglab, completion=True
+    )
+    for name in names:
+        module, _, attribute = COMMANDS[name].partition(":")
+        command = getattr(import_module(f"laglab.commands.{module}"), attribute)
+        if isinstance(command, typer.Typer):
+            app.add_typer(command, name=name)
+        else:
+            app.command(name)(command)
+    return app
+
+
+def _asked_for(arguments: Sequence[str]) -> Iterable[str]:
+    """Only the subcommand that is named: to import them all takes longer than many of them do."""
+    name = arguments[0] if arguments else ""
+    return [name] if name in COMMANDS else COMMANDS
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -97,14 +107,9 @@ def run_command(arguments: list[str] | None) -> int:
 def _exit_code(arguments: list[str] | None) -> int:
     try:
         on_interrupt(signal.default_int_handler)
-        code = int(
-            app(
-                spelled_out(sys.argv[1:] if arguments is None else arguments),
-                prog_name="laglab",
-                standalone_mode=False,
-            )
-            or 0
-        )
+        asked = spelled_out(sys.argv[1:] if arguments is None else arguments)
+        app = app_of(_asked_for(asked))
+        code = int(app(asked, prog_name="laglab", standalone_mode=False) or 0)
     except typer.TyperException as error:
         return _say(error.format_message(), error.exit_code)
     except LaglabError as error:

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import typer
 
-from laglab.command import app
+from laglab.command import app_of
 from laglab.live import spelled_out
 from laglab.results.shadows import COLUMNS
 from laglab_control import Erratum, PolarLaw, delay_margin
@@ -151,7 +151,7 @@ def commands() -> list[str]:
 @pytest.mark.parametrize("command", commands())
 def test_commands_in_the_pages_are_understood(command: str) -> None:
     """Read as typed, and not run: some of them take a minute."""
-    group = typer.main.get_command(app)
+    group = typer.main.get_command(app_of())
     name, *arguments = shlex.split(command)
     found = group.commands[name]  # type: ignore[attr-defined]
     if arguments:

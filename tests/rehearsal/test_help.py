@@ -1,5 +1,7 @@
 """What the command says of itself: help, version, names, completion; and all in 80 columns."""
 
+import subprocess
+import sys
 from importlib.metadata import version
 from pathlib import Path
 
@@ -35,6 +37,16 @@ def test_a_group_alone_shows_its_help(
     _, commands = alone.split("\nCommands:\n")
     assert "..." not in commands
     assert all(line.rstrip().endswith(".") for line in commands.splitlines())
+
+
+def test_a_command_does_not_wait_for_the_others() -> None:
+    """To import them all would take longer than it does."""
+    script = "import sys; from laglab.command import run_command; run_command(['scenarios']); "
+    loaded = "print(*(name for name in sys.modules if name.startswith('laglab.commands.')))"
+    done = subprocess.run([sys.executable, "-c", script + loaded], capture_output=True, text=True)
+    *_, names = done.stdout.splitlines()
+    assert "laglab.commands.parts.scenarios" in names.split()
+    assert not {"laglab.commands.bench", "laglab.commands.runs.run"} & set(names.split())
 
 
 def test_the_version_is_the_installed_one(capsys: pytest.CaptureFixture[str]) -> None:

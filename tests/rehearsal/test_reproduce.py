@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import typer
 
-from laglab.command import app
+from laglab.command import app_of
 from laglab.studies.reproduce import CLAIMS, Verdict, entries, tried, write_report
 
 ROOT = Path(__file__).parents[2]
@@ -59,7 +59,7 @@ def test_a_trial_comes_to_the_verdict_of_the_page(name):
 @pytest.mark.parametrize("claim", CLAIMS.values(), ids=CLAIMS)
 def test_each_command_is_understood(claim):
     _, name, *arguments = shlex.split(claim.command)
-    typer.main.get_command(app).commands[name].make_context(name, arguments)
+    typer.main.get_command(app_of()).commands[name].make_context(name, arguments)
 
 
 def test_a_verdict_follows_the_numbers_alone():
