@@ -91,8 +91,7 @@ class StationConfig:
 def without_blind_guard(config: StationConfig) -> StationConfig:
     """The same, unguarded if the estimator does not show how wild a measurement is."""
     estimator = estimator_kind(config.estimator, config.estimator_options).make(config.model)
-    blind = isinstance(estimator, Brought) and not estimator.is_watchable
-    return replace(config, guard=False) if blind else config
+    return config if estimator.is_watchable else replace(config, guard=False)
 
 
 class Control(NamedTuple):
@@ -148,6 +147,8 @@ class Controller:
                 f"estimator.guard: {estimator.name} has no method innovation(state), by which a "
                 "guard sees what is wild: leave the guard out"
             )
+        if not estimator.is_watchable:
+            return None
         return Guard(estimator, model, kind.learner(model) if kind.learner else None)
 
     def start(self) -> Control:

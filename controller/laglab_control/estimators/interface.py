@@ -136,6 +136,11 @@ class Estimator(Protocol[S]):
         """What is known by now of the robot besides its pose; of most estimators nothing."""
         return ()
 
+    @property
+    def is_watchable(self) -> bool:
+        """Whether its innovations show how wild a measurement is, as a guard needs it."""
+        return True
+
     def innovation(self, state: S) -> Innovation | None:
         """Of the newest measurement that the last `correct` was given, as the estimator saw it;
         None when it was given none, or did not use it."""

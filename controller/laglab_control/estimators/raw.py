@@ -41,6 +41,11 @@ class Raw(Estimator[RawState]):
                 state = state._replace(x=z, newest=tick)
         return state
 
+    @property
+    def is_watchable(self) -> bool:
+        """It expects nothing, so nothing is wild."""
+        return False
+
     def innovation(self, state: RawState) -> Innovation | None:
         """It expects nothing."""
         return None

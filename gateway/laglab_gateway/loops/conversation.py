@@ -3,12 +3,16 @@
 import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from typing import NamedTuple
 
 from laglab_gateway.errors import StationSilentError
+from laglab_gateway.link.log import LinkRow
 from laglab_gateway.loops.datagrams import datagrams
 from laglab_gateway.loops.surroundings import Surroundings
 from laglab_gateway.loops.watch import Watch
 from laglab_gateway.record.recorder import Recorder
+from laglab_gateway.record.rows import ArrivalRow, ClaimRow
+from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import Askers, heartbeat
 from laglab_gateway.side import RobotSide
 from laglab_gateway.speakers import from_station
@@ -37,6 +41,15 @@ KNOCK_PERIOD = 0.5
 TAKEN_OVER = "another station has taken over"
 
 
+class _Closed(NamedTuple):
+    """What there is to record of a tick."""
+
+    row: TraceRow
+    link: list[LinkRow]
+    arrivals: list[ArrivalRow]
+    claims: list[ClaimRow]
+
+
 class Conversation:
     """Sends, listens, records, and knows since when the station is silent."""
 
@@ -54,6 +67,7 @@ class Conversation:
         self._told = {TAKEN_OVER}
         self._askers = Askers()
         self._begun = False
+        self._closed: list[_Closed] = []
         self._knocked = -math.inf
         self._refusals = Refusals(self.now())
 
@@ -65,6 +79,7 @@ class Conversation:
         except KeyboardInterrupt:
             self._gateway.stop(EndReason.INTERRUPTED)
         except BaseException:
+            self._write_down()
             self._recorder = Recorder()  # it may be what failed
             with suppress(EndpointError):
                 self._say_goodbye()
@@ -104,6 +119,7 @@ class Conversation:
 
     def catch_up(self) -> None:
         """While the station thinks: write down what was, look after everybody else."""
+        self._write_down()
         self._recorder.flush()
         self._look_around()
 
@@ -211,26 +227,38 @@ class Conversation:
             raise StationSilentError(self._heard_tick, silence)
 
     def finish_tick(self) -> None:
-        """Close the tick and record it."""
-        row = self._gateway.close_tick()
-        self._recorder.row(row)
-        if rows := self._gateway.take_link_rows():
-            self._recorder.link(rows)
-        if arrivals := self._gateway.notes.take_arrivals():
-            self._recorder.arrivals(arrivals)
-        if claims := self._gateway.notes.take_claims():
-            self._recorder.claims(claims)
-        self._around.progress(row.tick)
+        """Close the tick; it is recorded when there is time."""
+        gateway, notes = self._gateway, self._gateway.notes
+        row = gateway.close_tick()
+        self._closed.append(
+            _Closed(row, gateway.take_link_rows(), notes.take_arrivals(), notes.take_claims())
+        )
+
+    def _write_down(self) -> None:
+        """Hand the recorder the ticks that were closed since the last time."""
+        closed, self._closed = self._closed, []
+        for tick in closed:
+            self._recorder.row(tick.row)
+            if tick.link:
+                self._recorder.link(tick.link)
+            if tick.arrivals:
+                self._recorder.arrivals(tick.arrivals)
+            if tick.claims:
+                self._recorder.claims(tick.claims)
+            self._around.progress(tick.row.tick)
 
     def _say_goodbye(self) -> None:
         """Tell the station, and give it a few chances to say that it heard; as long as it answers
         what came before, it is behind and has not read of the end."""
         outcome = self._gateway.stop(EndReason.FAILED)
+        self._write_down()
         self._recorder.flush()
         tries, latest = 0, self.now() + self._patience.silence
         while tries < END_TRIES and self.now() < latest:
             heard = self._heard
             self.send(self._gateway.farewell(outcome.reason))
+            if not self._gateway.connected:
+                return  # nobody came who could answer
             if self.listen_for(lambda: self._gateway.station_end is not None):
                 return
             tries = tries + 1 if self._heard == heard else 0
