@@ -53,7 +53,16 @@ def test_the_same_seed_draws_the_same_turns_and_all_of_them_can_be() -> None:
     for turn in turns:
         turn.scenario()
     kinds = {kind for turn in turns for kind in turn.kinds}
-    assert {"udp", "serial", "signed", "not signed", "lock-step", "real time"} < kinds
+    assert {
+        "udp",
+        "serial",
+        "signed",
+        "not signed",
+        "lock-step",
+        "real time",
+        "plans",
+        "play-out",
+    } < kinds
     assert {turn.blow.signal for turn in turns if turn.blow} == set(SIGNALS)
 
 

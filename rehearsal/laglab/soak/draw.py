@@ -27,6 +27,10 @@ SERIAL_STRANGERS = UDP_STRANGERS[:-1]
 """On a line nobody can tell one sender from another."""
 SIGNALS: tuple[Signal, ...] = ("SIGKILL", "SIGKILL", "SIGTERM", "SIGINT", "SIGSTOP")
 SPEEDS = (0.5, 1.0, 2.0, 4.0)
+MOST_HELD = 20
+"""[ticks] What play-out adds to a delay."""
+MOST_PLANNED = 100
+"""[ticks]"""
 
 
 def generator(seed: int, number: int) -> np.random.Generator:
@@ -114,14 +118,17 @@ def _station(rng: np.random.Generator) -> Overrides:
 
 
 def _link(rng: np.random.Generator) -> Overrides:
-    link: dict[str, object] = {
-        "link.command_delay": int(rng.integers(0, 21)),
-        "link.measurement_delay": int(rng.integers(0, 41)),
-    }
-    for direction in ("command", "measurement"):
+    link: dict[str, object] = {}
+    for direction, longest in (("command", 20), ("measurement", 40)):
+        delay = int(rng.integers(longest + 1))
+        link[f"link.{direction}_delay"] = delay
         if _by_chance(rng, 0.5):
             drawn = _impairments(rng)
             link |= {f"link.{direction}.{key}": value for key, value in drawn.items()}
+        if _by_chance(rng, 0.2):
+            link[f"link.playout.{direction}"] = delay + int(rng.integers(1, MOST_HELD))
+    if _by_chance(rng, 0.3):
+        link["link.plan"] = int(rng.integers(1, MOST_PLANNED))
     if _by_chance(rng, 0.3):
         link["link.event"] = [{"at": 1.0, "duration": 0.5, "link": {"loss": 1.0}}]
     return link

@@ -77,6 +77,10 @@ class Turn:
         yield "lock-step" if self.lockstep else "real time"
         yield self.transport
         yield "signed" if self.signed else "not signed"
+        if "link.plan" in self.overrides:
+            yield "plans"
+        if any(key.startswith("link.playout.") for key in self.overrides):
+            yield "play-out"
         yield from (f"strangers: {who}" for who in self.strangers)
         yield _told(self.blow) if self.blow else "no signal"
 
