@@ -52,6 +52,9 @@ def test_the_benchmark_says_what_each_way_costs(
         for case in ("udp, popf", "udp, raw")
         for way in ("bare echo", "by hand", "laglab")
     ]
+    assert [(each.case, each.name) for result in report.results[1:] for each in result.timings] == [
+        (case, way) for case in ("popf", "raw", "fig6", "lab") for way in ("inline", "udp")
+    ]
     figures = {(each.name, each.unit): each.value for each in report.figures}
     ours = timings["udp, popf", "laglab"]
     assert figures["udp, popf: laglab", "× real time"] == pytest.approx(1e4 / ours.fastest)

@@ -2,18 +2,28 @@
 
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import get_args
 
 from laglab.bench.by_hand import Link, seconds_per_echo, tick_sizes
 from laglab.bench.by_hand import loop as by_hand
-from laglab.bench.harness import Bench, Contest, Progress, Turn, microseconds
+from laglab.bench.harness import Bench, Contest, Progress, Turn, Unit, microseconds
 from laglab.bench.result import Figure, Result
-from laglab.bench.whole_run import SAMPLE_TIME, lateness, loop_of, loop_scenario, seconds_per_tick
+from laglab.bench.whole_run import (
+    SAMPLE_TIME,
+    lateness,
+    loop_of,
+    loop_scenario,
+    seconds_per_run,
+    seconds_per_tick,
+)
+from laglab.runs.rehearse import Transport
 
 TICK = microseconds("tick")
 LINKS: tuple[Link, ...] = get_args(Link)
 ESTIMATORS = ("popf", "raw")
+PROCESSES: tuple[Transport, ...] = ("inline", "udp")
 ECHO, BY_HAND, OURS = "bare echo", "by hand", "laglab"
 
 
@@ -28,7 +38,22 @@ def bench(ticks: int, realtime: float, links: Sequence[Link] = LINKS) -> Bench:
         progress("real time")
         return [*_speeds(results[0], list(cases)), *_lateness(realtime)]
 
-    return Bench("loop", [contest], figures)
+    return Bench("loop", [contest, *_one_or_two(ticks)], figures)
+
+
+def _one_or_two(ticks: int) -> Iterator[Contest]:
+    """In one process the two sides take turns; two work side by side, but have to be started."""
+    scenarios = {name: loop_scenario(name, ticks) for name in ESTIMATORS}
+    running: dict[str, dict[str, Turn]] = {
+        name: {each: _in_a_folder(partial(seconds_per_tick, each, scenario)) for each in PROCESSES}
+        for name, scenario in scenarios.items()
+    }
+    whole: dict[str, dict[str, Turn]] = {
+        name: {each: partial(seconds_per_run, each, name) for each in PROCESSES}
+        for name in ("fig6", "lab")
+    }
+    yield Contest("one process or two, once they run", TICK, "udp", running)
+    yield Contest("one process or two, from call to result", Unit("s", 1.0), "udp", whole)
 
 
 def _ways(link: Link, estimator: str, ticks: int) -> dict[str, Turn]:

@@ -1,14 +1,17 @@
 """Whole runs as the benches need them: all that a bench knows of scenarios and of running them."""
 
 from pathlib import Path
+from time import perf_counter
 from typing import NamedTuple
 
+from laglab import run
 from laglab.errors import RunError
 from laglab.runs.ending import Ending
 from laglab.runs.plant.shipped import robot_parameters
-from laglab.runs.rehearse import Transport, rehearse_apart
+from laglab.runs.rehearse import Transport, unheard
 from laglab.runs.robot_side import Setup
 from laglab.runs.station_side import station_config
+from laglab.runs.whole import run_into
 from laglab.scenario import Scenario, load
 from laglab_control import INITIAL_VARIANCE, StationConfig
 from laglab_fmu import RobotParameters
@@ -57,6 +60,13 @@ def seconds_per_tick(transport: Transport, scenario: Scenario, directory: Path) 
     return _run(transport, scenario, directory).loop_seconds / scenario.must_end()
 
 
+def seconds_per_run(transport: Transport, name: str) -> float:
+    """Wall time [s] of a shipped scenario from Python, from the call to the result in memory."""
+    began = perf_counter()
+    run(name, transport=transport)
+    return perf_counter() - began
+
+
 def realtime_scenario(seconds: float) -> Scenario:
     """`lab`, by the clock."""
     return load("lab", {"pace": "realtime", "duration": seconds})
@@ -72,7 +82,7 @@ def lateness(seconds: float, directory: Path, live: str | None = None) -> Timing
 def _run(
     transport: Transport, scenario: Scenario, directory: Path, live: str | None = None
 ) -> Ending:
-    ending = rehearse_apart(scenario, transport, directory, setup=Setup(live=live))
+    ending = run_into(directory, scenario, transport, unheard, Setup(live=live))
     if ending.outcome is None:
         raise RunError(f"the loop over {transport} ended early: {ending.problem}")
     return ending
