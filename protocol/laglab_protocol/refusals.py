@@ -42,4 +42,4 @@ class Refusals:
                 if count >= ENOUGH and reason in MENDED and told not in self._told:
                     self._told.add(told)
                     mended = MENDED[reason].format(key=self._option)
-                    yield f"{listener.link.name}: frames refused: {mended}"
+                    yield f"{listener.link.name}: {count} frames refused: {mended}"

@@ -4,8 +4,9 @@ import tempfile
 from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
+from typing import get_args
 
-from laglab.errors import RunError
+from laglab.errors import RunError, ScenarioError
 from laglab.progress import progress_of
 from laglab.results.columns import read_columns
 from laglab.results.complete import Way, complete, keep
@@ -41,11 +42,13 @@ def run(
         controller: what computes the station's answers, for a run in memory.
 
     Raises:
-        ScenarioError: there is no such scenario, or it cannot be.
+        ScenarioError: there is no such scenario or transport, or it cannot be.
         PlaceError: the results cannot go there.
         RunError: the run was cut short; what it left is in `out`.
         KeyboardInterrupt: Ctrl-C; what was recorded is in `out`, and nothing goes on running.
     """
+    if transport not in get_args(Transport):
+        raise ScenarioError(f"transport: take one of {', '.join(get_args(Transport))}")
     chosen = _chosen(scenario, overrides)
     if out is None:
         chosen.must_end()  # memory has no room for what does not end

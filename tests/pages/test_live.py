@@ -94,6 +94,7 @@ def test_it_follows_the_run_and_stops_the_robot(
     tab.click("#stop")
     tab.wait("document.getElementById('state').textContent.includes('the robot is stopped')")
     assert "emergency stop" in tab.text("#notices")
+    assert tab.text("#news") == ""
     assert tab.value("document.getElementById('stop').disabled")
     assert run.ended() == 5
     tab.wait("over")

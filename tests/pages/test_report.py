@@ -11,7 +11,7 @@ from PIL import Image
 
 from laglab import Run, load_study, run, sweep
 from laglab.results.link_view import link_view
-from laglab.results.report import report_html, save_report
+from laglab.results.report import report, report_html, save_report
 from laglab.results.report.reading import tables_of
 from laglab.results.run import Kept
 from laglab.results.table import summary_rows
@@ -164,6 +164,14 @@ def test_a_long_run_is_thinned_and_keeps_its_peaks(radio: Run) -> None:
     )
     assert tables_of(long, link_view(long), 5_000).commands["delay"].max() == 100
     assert len(report_html([long])) < MOST_BYTES
+
+
+def test_what_takes_more_room_is_drawn_with_fewer_ticks(
+    radio: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = report_html([radio])
+    monkeypatch.setattr(report, "LARGEST", len(whole.encode()) - 10_000)
+    assert len(report_html([radio]).encode()) <= report.LARGEST
 
 
 def test_what_is_hatched_is_what_was_measured(tab: Tab, page: Path) -> None:

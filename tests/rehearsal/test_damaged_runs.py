@@ -83,3 +83,24 @@ def test_a_damaged_file_is_told_in_a_line(
             assert len(errors.splitlines()) == 1, errors
             assert "run/" in errors
             assert len(errors) < 400
+
+
+@pytest.mark.parametrize("command", [COMPARE, FIGURE])
+def test_numbers_that_no_picture_has_room_for_are_told_in_a_line(
+    command: tuple[str, ...],
+    whole: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    ended: Callable[..., Any],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(whole, "run")
+    header, *rows = Path("run/trace.csv").read_text("utf-8").splitlines()
+    for number in (8, 9):
+        cells = rows[number].split(",")
+        rows[number] = ",".join([*cells[:2], "1e308", "-1e308", *cells[4:]])
+    Path("run/trace.csv").write_text("\n".join([header, *rows, ""]), "utf-8")
+    code, _, errors = ended(*command)
+    assert code == 4, errors
+    assert len(errors.splitlines()) == 1
+    assert "cannot be drawn" in errors

@@ -55,6 +55,27 @@ def test_many_shadows_are_named_across_their_panels(width: Width) -> None:
         run.figure(width=width).savefig(BytesIO())
 
 
+@pytest.mark.parametrize("name", ["$x^2_$", "costs $5_ or $6", "a\\$b", "日本語"])
+def test_a_name_is_no_formula(name: str) -> None:
+    """Nor does anybody hear of a letter that the font lacks."""
+    with printed():
+        figure = laglab.run("fig6", {"duration": 0.3, "name": name}).figure()
+        figure.savefig(BytesIO())
+    title = figure.texts[0]
+    assert title.get_text().startswith(f"{name}: ")
+    assert not title.get_parse_math()
+
+
+def test_powers_of_ten_are() -> None:
+    with printed():
+        figure = sheet(3.0, 2.0)
+        axes = figure.subplots()
+        axes.semilogy([1e-3, 1e3])
+        figure.savefig(BytesIO())
+    assert all(text.get_parse_math() for text in axes.get_yticklabels())
+    assert not any(text.get_parse_math() for text in axes.get_xticklabels())
+
+
 @pytest.fixture(scope="module")
 def papers() -> list[laglab.Run]:
     return [laglab.run(name, {"duration": 2.0}) for name in ("fig5", "fig6")]

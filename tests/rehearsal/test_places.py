@@ -8,8 +8,9 @@ from typing import Any
 import pytest
 
 import laglab
-from laglab.errors import ResultsError
+from laglab.errors import PlaceError, ResultsError
 from laglab.files import file_place, whole_file, write_whole
+from laglab.results.place import place
 
 Refused = Callable[..., str]
 LONG_NAME = "x" * 300
@@ -161,3 +162,18 @@ def test_a_link_to_a_place_where_nothing_is_yet_stays() -> None:
     Path("link.png").symlink_to("target.png")
     file_place("--out", Path("link.png"))
     assert Path("link.png").is_symlink()
+
+
+def test_an_unset_variable_names_no_place(in_vain: Refused) -> None:
+    assert "--out" in in_vain("run", "fig6", "--out", "")
+
+
+def test_what_had_no_room_blocks_no_place(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(path: Path, *_: object, **__: object) -> None:
+        path.touch()
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_text", full)
+    with pytest.raises(PlaceError, match="No space left on device"):
+        place(laglab.load("fig6"), Path("new"))
+    assert not list(Path("new").iterdir())

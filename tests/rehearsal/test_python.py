@@ -151,3 +151,8 @@ def test_ctrl_c_leaves_nothing_running(tmp_path: Path, transport: str) -> None:
     assert errors.rstrip().endswith("KeyboardInterrupt")
     assert not [child for child in children if Path(f"/proc/{child}").exists()]
     assert json.loads((tmp_path / "run" / "summary.json").read_text())["outcome"] == "interrupted"
+
+
+def test_a_transport_that_is_none_is_refused() -> None:
+    with pytest.raises(laglab.ScenarioError, match="take one of inline, udp, serial"):
+        laglab.run("fig6", transport="telepathy")  # type: ignore[arg-type]

@@ -84,12 +84,14 @@ def read_link_log(path: Path, direction: Direction) -> list[LinkRow]:
     no run does."""
     try:
         with path.open(newline="") as file:
-            header, *rows = csv.reader(file)
-            read = [_row(*cells) for cells in rows]
+            lines = csv.reader(file)
+            header = next(lines, [])
+            if header != list(LinkRow._fields):
+                columns = LINK_HEADER.strip()
+                raise TimelineError(f"{path} is not a link log: expected the columns {columns}")
+            read = [_row(*cells) for cells in lines]
     except (OSError, ValueError, TypeError, csv.Error) as error:
         raise TimelineError(f"{path} is not a readable link log: {error}") from error
-    if header != list(LinkRow._fields):
-        raise TimelineError(f"{path} is not a link log: expected the columns {LINK_HEADER.strip()}")
     own = [row for row in read if row.direction == direction]
     if (problem := _unbelievable(own)) is not None:
         raise TimelineError(f"{path} is not a link log that can be believed: {problem}")

@@ -9,6 +9,9 @@ POLLED = 5e-4
 """[s] Waking a sleeper takes a tenth of a millisecond, longer than the far end may take to answer:
 so the beginning of a wait is polled, and its end, in order to be in time for the deadline."""
 
+LONGEST = 3600.0
+"""[s] Systems refuse to sleep for ever; who wakes early sleeps again."""
+
 _yield: Callable[[], None] = getattr(os, "sched_yield", lambda: sleep(0.0))
 
 
@@ -23,7 +26,7 @@ def first_bytes(
     deadline = now + timeout
     data = _poll(read, min(now + POLLED, deadline))
     while data is None and (left := deadline - monotonic()) > 0:
-        select.select([descriptor()], [], [], max(left - POLLED, 0.0))
+        select.select([descriptor()], [], [], min(max(left - POLLED, 0.0), LONGEST))
         data = _poll(read, min(monotonic() + POLLED, deadline))
     return data or b""
 
@@ -36,4 +39,4 @@ def _poll(read: Callable[[], bytes | None], until: float) -> bytes | None:
 
 def writable(descriptor: int, timeout: float) -> bool:
     """Whether there is room to write within `timeout` seconds."""
-    return bool(select.select([], [descriptor], [], max(timeout, 0.0))[1])
+    return bool(select.select([], [descriptor], [], min(max(timeout, 0.0), LONGEST))[1])

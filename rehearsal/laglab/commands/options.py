@@ -37,9 +37,23 @@ PlantKeyOption = Annotated[
         "--plant-key", metavar="FILE", help="Sign every frame on the real robot's link, too."
     ),
 ]
+
+
+def _folder(told: str) -> Path:
+    """An empty name would be the current directory: a variable that is not set, most likely."""
+    if not told:
+        raise typer.BadParameter("an empty name; the current directory is called .")
+    return Path(told)
+
+
 OutOption = Annotated[
     Path | None,
-    typer.Option("--out", metavar="DIR", help="Where the results go; runs/SCENARIO otherwise."),
+    typer.Option(
+        "--out",
+        metavar="DIR",
+        parser=_folder,
+        help="Where the results go; runs/SCENARIO otherwise.",
+    ),
 ]
 ForceOption = Annotated[
     bool, typer.Option("--force", help="Take the place of another run's results in --out.")

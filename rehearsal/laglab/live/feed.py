@@ -21,6 +21,9 @@ PERIOD = 0.05
 MOST_TICKS, MOST_OTHERS = 100, 300
 """The most rows in a datagram: of the trace, and of each other table."""
 
+MOST_FRAMES = 100
+"""Of a station alone, which needs them all: what has no room goes into the next datagram."""
+
 STATUSTEXT = (253).to_bytes(3, "little")
 
 T = TypeVar("T")
@@ -94,7 +97,11 @@ class Feed(Recorder):
         rows.arrivals, rows.timing = _last(rows.arrivals[::every]), _last(rows.timing[::every])
         rows.link = _last([row for row in rows.link if row.fate != "delivered"])
         rows.stopped = self._controls.stopped()
+        frames, rows.frames = rows.frames, rows.frames[:MOST_FRAMES]
         self._caller.say(rows)
+        for first in range(MOST_FRAMES, len(frames), MOST_FRAMES):
+            more = frames[first : first + MOST_FRAMES]
+            self._caller.say(Rows(frames=more, stopped=rows.stopped))
 
 
 def _is_text(frame: bytes) -> bool:

@@ -2,6 +2,7 @@
 // Fills the plots as the run goes on, and passes the two orders on.
 
 const MOST_ROWS = 6000;
+const STOPPING = "stopping the robot";
 const NUMBERS = /^(?!lane$|what$)/;
 const state = document.getElementById("state");
 const news = document.getElementById("news");
@@ -52,6 +53,7 @@ function tell(piece) {
   if (piece.verdict !== null) state.textContent = piece.verdict;
   else if (!over) state.textContent = piece.stopped ? `${running}; the robot is stopped` : running;
   state.classList.toggle("bad", piece.stopped);
+  if (over || (piece.stopped && news.textContent === STOPPING)) news.textContent = "";
   for (const button of document.querySelectorAll(".buttons button"))
     button.disabled = over || (button.id === "stop" && piece.stopped);
 }
@@ -78,6 +80,6 @@ function follow() {
   };
 }
 
-document.getElementById("stop")?.addEventListener("click", () => order("stop", "stopping the robot"));
+document.getElementById("stop")?.addEventListener("click", () => order("stop", STOPPING));
 document.getElementById("end")?.addEventListener("click", () => order("end", "ending the run"));
 whenDrawn(follow);

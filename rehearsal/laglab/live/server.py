@@ -9,6 +9,7 @@ import os
 from contextlib import suppress
 from http import HTTPStatus
 from time import monotonic
+from typing import Any
 
 from msgspec.structs import replace
 
@@ -65,6 +66,7 @@ class _Server(asyncio.DatagramProtocol):
 
     async def run(self, tell: Tell) -> None:
         """Raises OSError when we cannot listen there."""
+        asyncio.get_running_loop().set_exception_handler(_unless_crowded)
         server = await asyncio.start_server(
             self._meet, self._order.host, self._order.port, limit=LONGEST_HEAD
         )
@@ -182,6 +184,12 @@ class _Server(asyncio.DatagramProtocol):
             self._readers.add(writer)
             return True
         return False
+
+
+def _unless_crowded(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    """A caller for whom the system has no room waits until it has: that is nobody's fault."""
+    if not isinstance(context.get("exception"), OSError):
+        loop.default_exception_handler(context)
 
 
 def _together(several: list[Rows]) -> Rows:

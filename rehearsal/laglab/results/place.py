@@ -1,6 +1,7 @@
 """Where a run's results go."""
 
 import re
+from contextlib import suppress
 from pathlib import Path
 
 from laglab.errors import PlaceError
@@ -37,6 +38,8 @@ def place(scenario: Scenario, out: Path | None, force: bool = False, suffix: str
         text = scenario.to_toml(directory)
         (directory / SCENARIO_FILE).write_text(text, encoding="utf-8")
     except OSError as error:
+        with suppress(OSError):
+            (directory / SCENARIO_FILE).unlink(missing_ok=True)
         raise PlaceError(f"cannot write into {directory}: {error.strerror}") from error
     return directory
 

@@ -6,6 +6,9 @@ from laglab_control import PluginFailedError
 from laglab_protocol import Address, EndReason, Link, Receiver
 from laglab_station import Station
 
+LONGEST = 1.0
+"""[s] A longer wait is several: systems refuse to sleep for ever."""
+
 
 class InlineLink(Link):
     """A link whose far end is a station core, called directly."""
@@ -42,5 +45,5 @@ class InlineLink(Link):
         """The next answer; where there is none, nothing will come in time either."""
         if self._inbox:
             return self._inbox.pop(0)
-        sleep(timeout)
+        sleep(min(timeout, LONGEST))
         return b""

@@ -140,7 +140,7 @@ BAD_TIMELINES = {
         "link.event.0.link.fog: unknown key",
     ),
     "nothing.csv": (None, "nothing.csv"),
-    "other.csv": ("a,b\n1,2\n", "not a readable link log"),
+    "other.csv": ("a,b\n1,2\n", "not a link log: expected the columns"),
     "long.csv": ('"' + "x" * 200_000, "not a readable link log"),
 }
 

@@ -7,7 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from laglab.errors import PlaceError
+from laglab.errors import PlaceError, ResultsError
 from laglab.files import file_place, whole_file
 from laglab.results.figures.style import printed, sheet
 
@@ -20,8 +20,13 @@ DOTS_PER_INCH = 220
 
 def save(figure: Figure, path: Path) -> None:
     """Write the figure in the format that the name's ending says. Raises ResultsError."""
-    with printed(), whole_file(path) as file:
-        figure.savefig(file, format=_format(path), dpi=DOTS_PER_INCH)
+    try:
+        with printed(), whole_file(path) as file:
+            figure.savefig(file, format=_format(path), dpi=DOTS_PER_INCH)
+    except OverflowError as error:
+        raise ResultsError(
+            f"{path} cannot be drawn: it shows numbers that are too large; is the run damaged?"
+        ) from error
 
 
 def picture_place(path: Path, named: str = "--out") -> Path:

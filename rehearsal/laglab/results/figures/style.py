@@ -6,9 +6,12 @@ colours are Okabe's and Ito's, which the colour-blind can tell apart, in an orde
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -93,10 +96,15 @@ def line(number: int) -> Line:
 @contextmanager
 def printed() -> Iterator[None]:
     """Whatever is drawn within looks so; matplotlib is loaded here, for a side alone does
-    without."""
+    without. Numbers too large for an axis are told when the figure is saved, not by numpy."""
     from matplotlib import rc_context
 
-    with rc_context(PRINT):  # type: ignore[arg-type]
+    with (
+        rc_context(PRINT),  # type: ignore[arg-type]
+        np.errstate(over="ignore", invalid="ignore"),
+        warnings.catch_warnings(),
+    ):
+        warnings.filterwarnings("ignore", "Glyph .* missing from font")  # a box stands for it
         yield
 
 

@@ -71,7 +71,6 @@ def path_plot(
     )
     plot.scatter("x", "y", source=sources.flight, color=RED, size=3.5)
     legend_above(plot)
-    plot.legend[0].ncols = 3
     return plot
 
 

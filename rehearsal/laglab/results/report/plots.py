@@ -134,10 +134,14 @@ def dressed(plot: figure) -> figure:
     return plot
 
 
+NAMES_IN_A_ROW = 3
+
+
 def legend_above(plot: figure) -> None:
-    """One line of it, out of the data's way; a click hides a curve."""
+    """Out of the data's way, in rows that a narrow page has room for; a click hides a curve."""
     legend: Legend = plot.legend[0]
     legend.orientation = "horizontal"
+    legend.ncols = min(NAMES_IN_A_ROW, len(legend.items))
     legend.location = "top_left"
     legend.click_policy = "hide"
     legend.label_text_font_size = "11px"

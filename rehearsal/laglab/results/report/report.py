@@ -14,16 +14,26 @@ from laglab.results.summary import Summary
 from laglab.results.table import summary_rows, warnings
 
 MOST_ROWS = 12_000
-"""Ticks, of all runs together: what a file of 4 MB has room for beside bokeh."""
+"""Ticks, of all runs together: what a file of 4 MB has room for beside bokeh, as a rule."""
+LARGEST = 4_000_000
+"""[byte]"""
+FEWEST = 200
+"""Ticks of a run that are shown at least."""
 MOST_RUNS = 8
 
 
 def report_html(runs: Sequence[Run]) -> str:
-    """One file that needs no other. Raises: ResultsError, TraceError."""
+    """One file that needs no other, and is no larger than LARGEST: where shadows and losses take
+    room, with fewer ticks. Raises: ResultsError, TraceError."""
+    most = MOST_ROWS // len(runs)
+    while len((text := _html(runs, most)).encode()) > LARGEST and most > FEWEST:
+        most //= 2
+    return text
+
+
+def _html(runs: Sequence[Run], most: int) -> str:
     names = labels(runs)
-    panels = [
-        _panel(run, name, MOST_ROWS // len(runs)) for run, name in zip(runs, names, strict=True)
-    ]
+    panels = [_panel(run, name, most) for run, name in zip(runs, names, strict=True)]
     page = Page(
         title=" and ".join(names) if len(runs) > 1 else title(runs[0].scenario),
         scripts=[text_of(HERE, "player.js")],

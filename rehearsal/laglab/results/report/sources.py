@@ -48,4 +48,5 @@ def _small(columns: Columns) -> dict[str, NDArray[np.generic] | list[str]]:
 def _column(name: str, column: NDArray[np.generic]) -> NDArray[np.generic] | list[str]:
     if column.dtype.kind in "OU":
         return [str(cell) for cell in column]
-    return column.astype(np.float64 if name in EXACT else np.float32)
+    with np.errstate(over="ignore"):  # beyond what a screen shows
+        return column.astype(np.float64 if name in EXACT else np.float32)

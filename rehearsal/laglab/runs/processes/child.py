@@ -158,7 +158,16 @@ def _read_on(orders: Queue[bytes]) -> None:
     """Whatever comes; at the end our parent is gone, or wants us to go."""
     while line := _line():
         orders.put(line)
-    signal.raise_signal(signal.SIGINT)
+    _interrupt()
+
+
+def _interrupt() -> None:
+    """Our main thread, even where it waits for its peer."""
+    main_thread = threading.main_thread().ident
+    if hasattr(signal, "pthread_kill") and main_thread is not None:
+        signal.pthread_kill(main_thread, signal.SIGINT)
+    else:
+        signal.raise_signal(signal.SIGINT)
 
 
 def _next(orders: Queue[bytes]) -> bytes:

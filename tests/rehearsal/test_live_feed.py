@@ -1,0 +1,45 @@
+"""What the loop tells its live page, in datagrams."""
+
+import asyncio
+import socket
+
+import pytest
+
+from laglab.live.feed import Controls, Feed
+from laglab.live.messages import Line, Rows, unpacked
+from laglab.live.server import _unless_crowded
+
+
+def test_a_fast_station_s_frames_all_have_room() -> None:
+    """They come in more than one datagram of 60,000 bytes; without one of them the page would have
+    a gap, without all of them nothing."""
+    frames = [number.to_bytes(2) * 100 for number in range(900)]
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as page:
+        page.bind(("127.0.0.1", 0))
+        page.settimeout(5.0)
+        feed = Feed(Line(page.getsockname()[1], "secret"), Controls(lambda: None, lambda: False))
+        feed.said(frames)
+        feed.flush()
+        came: list[bytes] = []
+        while len(came) < len(frames):
+            rows = unpacked(page.recv(1 << 16), "secret")
+            assert isinstance(rows, Rows)
+            came += rows.frames
+        feed.close()
+    assert came == frames
+
+
+def test_a_crowd_at_the_door_is_not_told_to_the_terminal(
+    capsys: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
+) -> None:
+    """But a fault of ours is."""
+    loop = asyncio.new_event_loop()
+    try:
+        loop.set_exception_handler(_unless_crowded)
+        loop.call_exception_handler({"message": "accept", "exception": OSError(24, "too many")})
+        assert not caplog.records
+        loop.call_exception_handler({"message": "ours", "exception": ValueError("ours")})
+        assert len(caplog.records) == 1
+    finally:
+        loop.close()
+    assert capsys.readouterr().err == ""
