@@ -24,14 +24,10 @@ def pytest_configure(config: pytest.Config) -> None:
             compileall.compile_dir(ROOT / component, quiet=2)
 
 
-def pytest_xdist_auto_num_workers() -> int:
-    """One more than there are processors: two fifths of the time the tests wait for the clock."""
-    return (os.cpu_count() or 1) + 1
-
-
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """What is built for a release takes longest: begun last, it would be waited for."""
-    items.sort(key=lambda item: "release" not in item.path.parts)
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
+    """As many as processors; without the slow tests, which keep them busy, one more: the others
+    wait for the clock for two fifths of their time."""
+    return (os.cpu_count() or 1) + ("not slow" in config.option.markexpr)
 
 
 Start = Callable[..., "subprocess.Popen[str]"]
