@@ -8,7 +8,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from laglab_control import ESTIMATORS, Alarm, Applied, Guard, Measured, RobotModel
+from laglab_control import (
+    ESTIMATORS,
+    Alarm,
+    Applied,
+    Controller,
+    Guard,
+    Measured,
+    RobotModel,
+    StationConfig,
+)
 from laglab_control.guard import Watched
 from laglab_control.model import Matrix, Vector
 
@@ -65,9 +74,10 @@ def test_while_nothing_is_wrong_it_is_the_estimator_bit_for_bit(name: str) -> No
         assert np.array_equal(said.P, watched.P)
 
 
-def test_raw_which_claims_nothing_cannot_be_wrong_about_itself() -> None:
-    states = followed(guarded("raw"), sampled(driven(60), seed=1), x=np.full(3, 9.0))
-    assert alarms(states) == []
+@pytest.mark.parametrize(("name", "watched"), [("raw", False), ("popf", True)])
+def test_who_expects_nothing_is_not_watched(name: str, watched: bool) -> None:
+    controller = Controller(StationConfig(name, guard=True))
+    assert isinstance(controller.start().estimate, Watched) is watched
 
 
 def test_noise_alone_raises_no_alarm() -> None:

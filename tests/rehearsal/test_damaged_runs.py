@@ -49,6 +49,13 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.fixture
+def copied(whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """In the current folder, to be damaged."""
+    monkeypatch.chdir(tmp_path)
+    return Path(shutil.copytree(whole, "run"))
+
+
 def damage(path: Path, how: str) -> None:
     data = path.read_bytes()
     path.unlink()
@@ -66,16 +73,9 @@ def damage(path: Path, how: str) -> None:
 @pytest.mark.parametrize("how", DAMAGES)
 @pytest.mark.parametrize("name", READ_BY)
 def test_a_damaged_file_is_told_in_a_line(
-    name: str,
-    how: str,
-    whole: Path,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    ended: Callable[..., Any],
+    name: str, how: str, copied: Path, ended: Callable[..., Any]
 ) -> None:
-    monkeypatch.chdir(tmp_path)
-    shutil.copytree(whole, "run")
-    damage(Path("run") / name, how)
+    damage(copied / name, how)
     for arguments in READ_BY[name]:
         code, _, errors = ended(*arguments)
         assert code == (0 if (name, how) in GOOD_AS_FAR_AS_IT_GOES else 2), errors
@@ -87,19 +87,14 @@ def test_a_damaged_file_is_told_in_a_line(
 
 @pytest.mark.parametrize("command", [COMPARE, FIGURE])
 def test_numbers_that_no_picture_has_room_for_are_told_in_a_line(
-    command: tuple[str, ...],
-    whole: Path,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    ended: Callable[..., Any],
+    command: tuple[str, ...], copied: Path, ended: Callable[..., Any]
 ) -> None:
-    monkeypatch.chdir(tmp_path)
-    shutil.copytree(whole, "run")
-    header, *rows = Path("run/trace.csv").read_text("utf-8").splitlines()
+    trace = copied / "trace.csv"
+    header, *rows = trace.read_text("utf-8").splitlines()
     for number in (8, 9):
         cells = rows[number].split(",")
         rows[number] = ",".join([*cells[:2], "1e308", "-1e308", *cells[4:]])
-    Path("run/trace.csv").write_text("\n".join([header, *rows, ""]), "utf-8")
+    trace.write_text("\n".join([header, *rows, ""]), "utf-8")
     code, _, errors = ended(*command)
     assert code == 4, errors
     assert len(errors.splitlines()) == 1
