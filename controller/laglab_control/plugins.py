@@ -3,7 +3,7 @@
 import inspect
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
@@ -131,13 +131,20 @@ def called(name: str, brought: object, method: str, *told: object) -> Any:
         raise PluginFailedError(f"{name}.{method}: {one_line(error)}") from error
 
 
-@contextmanager
-def at_tick(tick: int) -> Iterator[None]:
+class at_tick:
     """Any PluginFailedError from within names the tick."""
-    try:
-        yield
-    except PluginFailedError as error:
-        raise PluginFailedError(f"tick {tick}: {error}") from error
+
+    __slots__ = ("_tick",)
+
+    def __init__(self, tick: int) -> None:
+        self._tick = tick
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, _: object, error: BaseException | None, trace: object) -> None:
+        if isinstance(error, PluginFailedError):
+            raise PluginFailedError(f"tick {self._tick}: {error}") from error
 
 
 def one_line(error: BaseException) -> str:

@@ -46,10 +46,10 @@ from laglab_gateway.record.files import (
 from laglab_gateway.record.lateness import TimingReport
 from laglab_gateway.record.recorder import MemoryRecorder, Recorder, Tapped
 from laglab_gateway.record.rows import FOLLOWED, ArrivalRow, ClaimRow, TimingRow, claimed
+from laglab_gateway.record.text import csv_lines
 from laglab_gateway.record.trace import (
     Trace,
     TraceRow,
-    format_row,
     read_trace,
     trace_of,
     trace_pieces,
@@ -128,8 +128,8 @@ __all__ = [
     "Watch",
     "Watcher",
     "claimed",
+    "csv_lines",
     "first_tick",
-    "format_row",
     "read_link_log",
     "read_trace",
     "recorded_ticks",

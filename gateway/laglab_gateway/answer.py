@@ -19,13 +19,15 @@ class Answer:
     def __init__(self) -> None:
         self.through = -1
         """The tick of the last command that was taken."""
-        self.begin()
-
-    def begin(self) -> None:
-        """Nothing was said yet at this tick."""
         self.command: Command | None = None
         self.estimates: deque[Estimate] = deque(maxlen=UNANNOUNCED)
         self._beside: deque[Recall | Plan] = deque(maxlen=UNANNOUNCED)
+
+    def begin(self) -> None:
+        """Nothing was said yet at this tick."""
+        self.command = None
+        self.estimates.clear()
+        self._beside.clear()
 
     def take(self, message: Estimate | Recall | Plan | Command, tick: int) -> Said | None:
         """What goes on the link at `tick` now that `message` has come: a whole command for this

@@ -52,7 +52,7 @@ class Incoming:
     def take(self, tick: int) -> Came:
         """What has come by `tick`."""
         came = Came([], [], [], [], [])
-        for message, _ in self._channel.due(tick - self.first):
+        for message in self._channel.due(tick - self.first):
             match message:
                 case Recall():
                     came.recalls.append(message)

@@ -131,7 +131,7 @@ class RobotSide(ABC):
             self._measurements.push(self.elapsed, sample, until)
         for told in self._owed.take():
             self._measurements.push(self.elapsed, told)
-        due = [crossing.message for crossing in self._measurements.due(self.elapsed)]
+        due = self._measurements.due(self.elapsed)
         for message in due:
             if isinstance(message, Measurement):
                 self.audit.measurement.arrived(message.tick, self.tick)

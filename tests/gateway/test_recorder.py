@@ -17,9 +17,11 @@ from laglab_gateway import (
     Impairments,
     RandomFates,
     Surroundings,
+    TraceRow,
     read_link_log,
     serve_lockstep,
 )
+from laglab_gateway.record import files
 from laglab_gateway.record.trace import read_trace
 from laglab_protocol import (
     ROBOT_COMPONENT,
@@ -85,3 +87,18 @@ def test_a_link_that_breaks_leaves_the_trace_and_what_the_link_did_up_to_the_sam
     for direction in DIRECTIONS:
         rows = read_link_log(tmp_path / "link.csv", direction)
         assert {row.tick for row in rows} == whole
+
+
+@pytest.mark.parametrize(("pause", "written"), [(0.0, [1, 2, 3]), (3600.0, [1, 1, 1])])
+def test_ticks_that_follow_each_other_fast_are_written_together(
+    pause: float, written: list[int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(files, "PAUSE", pause)
+    there: list[int] = []
+    with closing(FileRecorder(tmp_path)) as recorder:
+        for tick in range(3):
+            recorder.row(TraceRow(tick, *[0.0] * 14))
+            recorder.flush()
+            there.append(len(read_trace(tmp_path / "trace.csv")["tick"]))
+    assert there == written
+    assert read_trace(tmp_path / "trace.csv")["tick"].tolist() == [0, 1, 2]

@@ -51,7 +51,7 @@ def innovation(model: Model, compared: Compared | None) -> Innovation | None:
         return None
     (x, P), z = compared
     H = model.H(x)
-    S = H @ P @ H.T + model.measurement_noise(x)
+    S = H.dot(P).dot(H.T) + model.measurement_noise(x)
     return Innovation(model.innovation(z, model.h(x)), S)
 
 

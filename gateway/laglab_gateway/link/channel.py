@@ -3,7 +3,7 @@
 import heapq
 import math
 from collections.abc import Callable
-from typing import Generic, NamedTuple, TypeVar
+from typing import Generic, TypeVar
 
 from laglab_gateway.link.fates import FateKind, Fates
 from laglab_gateway.link.log import LinkRow
@@ -14,13 +14,6 @@ M = TypeVar("M", bound=Message)
 
 ROUNDING = 1e-9
 """A frame due this little [ticks] after a tick is due at it: times are sums of doubles."""
-
-
-class Crossing(NamedTuple, Generic[M]):
-    """What comes out of a channel: the message, and the tick at which it went in."""
-
-    message: M
-    entered: int
 
 
 class Channel(Generic[M]):
@@ -50,7 +43,7 @@ class Channel(Generic[M]):
         self._bytes_of = frame or Sender(0, 0).frame
         self._entered = 0
         self._frame = (-1, 0)
-        self._waiting: list[tuple[int, int, Crossing[M]]] = []
+        self._waiting: list[tuple[int, int, M]] = []
 
     def push(self, tick: int, message: M, until: float = math.inf) -> None:
         """Put in `message` at `tick`; ticks never go back. What comes out after the tick `until` is
@@ -60,7 +53,7 @@ class Channel(Generic[M]):
         else:
             self._impair(tick, message, until, self._fates)
 
-    def due(self, tick: int) -> list[Crossing[M]]:
+    def due(self, tick: int) -> list[M]:
         """Take out all that has waited long enough: by its time, then in the order of entering."""
         due = []
         while self._waiting and self._waiting[0][0] <= tick:
@@ -79,7 +72,7 @@ class Channel(Generic[M]):
     def _hold(self, tick: int, message: M, extra_ticks: int) -> None:
         self._entered += 1
         due = tick + self._delay + extra_ticks
-        heapq.heappush(self._waiting, (due, self._entered, Crossing(message, tick)))
+        heapq.heappush(self._waiting, (due, self._entered, message))
 
     def _impair(self, tick: int, message: M, until: float, fates: Fates) -> None:
         number = self._number(tick)

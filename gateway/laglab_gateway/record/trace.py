@@ -43,12 +43,6 @@ Trace: TypeAlias = dict[str, NDArray[np.float64]]
 HEADER = ",".join(TraceRow._fields) + "\n"
 
 
-def format_row(row: tuple[int | float | str | None, ...]) -> str:
-    """`repr` of a float is the shortest text that reads back to the same double."""
-    cells = ["" if cell is None else cell if isinstance(cell, str) else repr(cell) for cell in row]
-    return ",".join(cells) + "\n"
-
-
 def read_trace(path: Path) -> Trace:
     """The columns of a trace file, each of shape (ticks + 1,).
 

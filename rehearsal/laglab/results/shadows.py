@@ -14,7 +14,7 @@ from laglab.results.summary import Errors
 from laglab.runs.station_side import shadow_config
 from laglab.scenario import Scenario
 from laglab_control import PluginFailedError
-from laglab_gateway import Trace, format_row
+from laglab_gateway import Trace, csv_lines
 from laglab_station import SessionTick, ShadowRow, shadow
 
 COLUMNS = ("tick", *AXES, *COVARIANCE)
@@ -59,9 +59,9 @@ def kept_rows(rows: Iterable[ShadowRow], path: Path) -> Iterator[ShadowRow]:
     """
     upper = np.triu_indices(3)
     with whole_file(path) as file:
-        file.write(format_row(COLUMNS).encode())
+        file.write(csv_lines([COLUMNS]))
         for row in rows:
-            file.write(format_row((row.tick, *row.x.tolist(), *row.P[upper].tolist())).encode())
+            file.write(csv_lines([(row.tick, *row.x.tolist(), *row.P[upper].tolist())]))
             yield row
 
 

@@ -40,7 +40,7 @@ def cross(line: Channel[Command], ticks: int, more: int = 100) -> list[tuple[int
     for tick in range(ticks + more):
         if tick < ticks:
             line.push(tick, command(tick))
-        out += [(crossing.message.tick, tick) for crossing in line.due(tick)]
+        out += [(message.tick, tick) for message in line.due(tick)]
     return out
 
 
@@ -174,7 +174,7 @@ def test_frames_that_enter_in_one_tick_are_replayed_each_as_its_own() -> None:
         for tick in range(60):
             for part in range(3):
                 line.push(tick, command(3 * tick + part))
-            out += [(crossing.message.tick, tick) for crossing in line.due(tick)]
+            out += [(message.tick, tick) for message in line.due(tick)]
         return out
 
     line = channel(Impairments(ExtraDelay("exponential", 0.02), loss=0.4))

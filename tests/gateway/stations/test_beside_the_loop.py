@@ -13,7 +13,7 @@ from laglab_gateway import (
     Surroundings,
     Watch,
     Watcher,
-    format_row,
+    csv_lines,
     serve_lockstep,
     standard_parameters,
 )
@@ -45,7 +45,7 @@ QUESTIONS = [encoded(row.request) for row in ROWS]
 UNANSWERED = [encoded(row.request) for row in ROWS if not row.answers]
 
 
-def trace(asking: bool) -> str:
+def trace(asking: bool) -> bytes:
     """Of a run that is watched; with everything asked at every tick, on both links."""
     with (
         Robot.open(3, PARAMETERS) as robot,
@@ -68,7 +68,7 @@ def trace(asking: bool) -> str:
         watch = Watch(services, [watcher])
         serve_lockstep(gateway, Surroundings(link, recorder, watch=watch, progress=ask))
         assert (theirs.receive(0.0) != b"") is asking
-    return "".join(map(format_row, recorder.rows))
+    return csv_lines(recorder.rows)
 
 
 def test_the_trace_is_the_same_byte_for_byte() -> None:

@@ -101,7 +101,7 @@ class _Robot:
         self._measurements.push(tick, sample)
         for told in self._owed.take():
             self._measurements.push(tick, told)
-        due = [crossing.message for crossing in self._measurements.due(tick)]
+        due = self._measurements.due(tick)
         self.most_at_once = max(self.most_at_once, len(due))
         return due
 
@@ -113,7 +113,7 @@ class _Robot:
 
     def settle(self, tick: int) -> None:
         """What has come across comes into force, and the failsafe watches."""
-        for message, _ in self._commands.due(tick):
+        for message in self._commands.due(tick):
             if isinstance(message, Recall):
                 self._owed.owe(self._memory.answers(message))
             elif rejection(self._drive, message, self._safety) is None:
