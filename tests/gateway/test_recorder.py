@@ -89,16 +89,17 @@ def test_a_link_that_breaks_leaves_the_trace_and_what_the_link_did_up_to_the_sam
         assert {row.tick for row in rows} == whole
 
 
-@pytest.mark.parametrize(("pause", "written"), [(0.0, [1, 2, 3]), (3600.0, [1, 1, 1])])
+@pytest.mark.parametrize(("pause", "written"), [(0.0, [1, 2, 3, 4]), (3600.0, [1, 1, 1, 4])])
 def test_ticks_that_follow_each_other_fast_are_written_together(
     pause: float, written: list[int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(files, "PAUSE", pause)
+    monkeypatch.setattr(files, "TOGETHER", 3)
     there: list[int] = []
     with closing(FileRecorder(tmp_path)) as recorder:
-        for tick in range(3):
+        for tick in range(4):
             recorder.row(TraceRow(tick, *[0.0] * 14))
             recorder.flush()
             there.append(len(read_trace(tmp_path / "trace.csv")["tick"]))
     assert there == written
-    assert read_trace(tmp_path / "trace.csv")["tick"].tolist() == [0, 1, 2]
+    assert read_trace(tmp_path / "trace.csv")["tick"].tolist() == [0, 1, 2, 3]

@@ -24,13 +24,6 @@ class Belief(NamedTuple):
     P: Matrix
 
 
-class Compared(NamedTuple):
-    """A measurement z (q,) and the prior that a filter compared it with."""
-
-    prior: Belief
-    z: Vector
-
-
 class Innovation(NamedTuple):
     """z - h(x^-) (q,) and its claimed covariance S = H P^- H^T + R (q, q)."""
 
@@ -43,16 +36,6 @@ class Corrected(NamedTuple):
 
     posterior: Belief
     innovation: Innovation
-
-
-def innovation(model: Model, compared: Compared | None) -> Innovation | None:
-    """Of the comparison; None where there was none."""
-    if compared is None:
-        return None
-    (x, P), z = compared
-    H = model.H(x)
-    S = H.dot(P).dot(H.T) + model.measurement_noise(x)
-    return Innovation(model.innovation(z, model.h(x)), S)
 
 
 Triangle = tuple[float, float, float, float, float, float]

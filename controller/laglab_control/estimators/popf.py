@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from laglab_control.estimators.interface import Applied, Estimator, Measured, by_sampling
-from laglab_control.estimators.kalman import Belief, Compared, Innovation, gain, innovation
+from laglab_control.estimators.kalman import Belief, Innovation, gain
 from laglab_control.model import Matrix, Model, Vector, identity, symmetric
 from laglab_control.past.history import History
 from laglab_control.past.log import logged
@@ -41,6 +41,8 @@ class Correction(NamedTuple):
     s: int
     prior: Belief
     """x^-_s and P^-_s."""
+    S: Matrix
+    """What is claimed for z_s - h(x^-_s)."""
     K: Matrix
     P: Matrix
     """P^+_k."""
@@ -57,7 +59,7 @@ class PopfState(NamedTuple):
     prior: Belief
     """x^-_k and P^-_k."""
     used: Used
-    compared: Compared | None = None
+    innovation: Innovation | None = None
     expected: Correction | None = None
     """The one by the measurement that is expected at this tick."""
 
@@ -119,10 +121,10 @@ class Popf(Estimator[PopfState]):
         tick, x, _, prior, _, _, correction = state
         if correction is None or correction.s != s:
             correction = self._correction(state, s)
-        _, prior_s, K, P, used = correction
-        expected = self.model.h(prior.x if self.innovation_at_k else prior_s.x)
-        x = x + K.dot(self.model.innovation(z, expected))
-        return PopfState(tick, x, P, prior, used, Compared(prior_s, z))
+        _, prior_s, S, K, P, used = correction
+        v = self.model.innovation(z, self.model.h(prior_s.x))
+        taken = self.model.innovation(z, self.model.h(prior.x)) if self.innovation_at_k else v
+        return PopfState(tick, x + K.dot(taken), P, prior, used, Innovation(v, S))
 
     def _correction(self, state: PopfState, s: int) -> Correction:
         tick, _, P, prior, (left, past, used, lateness), *_ = state
@@ -132,17 +134,18 @@ class Popf(Estimator[PopfState]):
         H = model.H(x_s)
         PHt = P_s.dot(H.T)
         cross = M.dot(PHt)
-        K = gain(cross, H.dot(PHt) + model.measurement_noise(x_s))  # (24)
+        S = H.dot(PHt) + model.measurement_noise(x_s)
+        K = gain(cross, S)  # (24)
         H_k = model.H(prior.x)
         seen = M.dot(P_s).dot(H_k.T) if self.covariance_at_k else cross
         P = symmetric(P - K.dot(seen.T))  # (23)
         left = left - K.dot(H_k).dot(left)
         with_this = Used(left, past, used | 1 << tick - s, max(lateness, tick - s))
-        return Correction(s, prior_s, K, P, with_this)
+        return Correction(s, prior_s, S, K, P, with_this)
 
     def innovation(self, state: PopfState) -> Innovation | None:
         """z_s - h(x^-_s)."""
-        return innovation(self.model, state.compared)
+        return state.innovation
 
     def warning(self, state: PopfState) -> str | None:
         """When the gain is above `delay_limit`."""

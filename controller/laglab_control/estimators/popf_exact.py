@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from laglab_control.estimators.interface import Applied, Estimator, Measured, by_sampling
-from laglab_control.estimators.kalman import Belief, Compared, Innovation, gain, innovation
+from laglab_control.estimators.kalman import Innovation, gain
 from laglab_control.model import Matrix, Model, Vector, symmetric
 
 
@@ -31,7 +31,7 @@ class ExactState(NamedTuple):
     """Of ticks k - len(priors) + 1 ... k."""
     newest: int
     """The tick of the newest measurement used."""
-    compared: Compared | None
+    innovation: Innovation | None
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class PopfExact(Estimator[ExactState]):
     def start(self, x: Vector, P: Matrix) -> ExactState:
         """The prior of tick 0."""
         row = P[np.newaxis]
-        return ExactState(0, x, P, row, (Prior(x, row),), newest=-1, compared=None)
+        return ExactState(0, x, P, row, (Prior(x, row),), newest=-1, innovation=None)
 
     def predict(self, state: ExactState, u: Vector) -> ExactState:
         """(27), and E[x~^-_{k+1} x~^-_{k-i}^T] = A C_i."""
@@ -74,18 +74,19 @@ class PopfExact(Estimator[ExactState]):
         priors, row = priors[-m - 1 :], row[: m + 1]
         x_s, P_s, C_m = priors[0].x, priors[0].row[0], row[m]
         H = self.model.H(x_s)
-        K = gain(C_m @ H.T, H @ P_s @ H.T + self.model.measurement_noise(x_s))
+        S = H @ P_s @ H.T + self.model.measurement_noise(x_s)
+        K, v = gain(C_m @ H.T, S), self.model.innovation(z, self.model.h(x_s))
         since_s = np.stack([prior.row[j].T for j, prior in enumerate(priors)])
         return ExactState(
             tick,
-            x + K @ self.model.innovation(z, self.model.h(x_s)),
+            x + K @ v,
             symmetric(P - K @ H @ C_m.T),
             row - K @ H @ since_s[::-1],
             priors,
             newest=s,
-            compared=Compared(Belief(x_s, P_s), z),
+            innovation=Innovation(v, S),
         )
 
     def innovation(self, state: ExactState) -> Innovation | None:
         """z_s - h(x^-_s)."""
-        return innovation(self.model, state.compared)
+        return state.innovation

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from laglab_control.estimators.interface import Applied, Estimator, Measured, by_sampling
-from laglab_control.estimators.kalman import Belief, Compared, Innovation, innovation
+from laglab_control.estimators.kalman import Belief, Innovation
 from laglab_control.model import Matrix, Model, Vector, identity
 from laglab_control.past.log import Log, append, logged
 
@@ -33,7 +33,7 @@ class LiteralState(NamedTuple):
     """From tick 0 on."""
     used: int = 0
     """Bit s is set when z_s has been used."""
-    compared: Compared | None = None
+    innovation: Innovation | None = None
 
 
 @dataclass(frozen=True)
@@ -72,19 +72,20 @@ class LiteralPopf(Estimator[LiteralState]):
 
     def _with(self, state: LiteralState, s: int, z: Vector) -> LiteralState:
         tick, x, P, prior, left, past, used, _ = state
-        x_s, P_s = prior_s = prior if s == tick else past.items[s].prior
+        x_s, P_s = prior if s == tick else past.items[s].prior
         H, M = self.model.H(x_s), left  # (21)
         for step in reversed(past.items[s:tick]):
             M = M.dot(step.factor)
         PHt = P_s.dot(H.T)
-        K = M.dot(PHt).dot(np.linalg.inv(H.dot(PHt) + self.model.measurement_noise(x_s)))  # (24)
-        x = x + K.dot(self.model.innovation(z, self.model.h(x_s)))  # (11)
+        S = H.dot(PHt) + self.model.measurement_noise(x_s)
+        K = M.dot(PHt).dot(np.linalg.inv(S))  # (24)
+        v = self.model.innovation(z, self.model.h(x_s))
+        x = x + K.dot(v)  # (11)
         P = P - K.dot(H).dot(P_s).dot(M.T)  # (23)
         P = (P + P.T) / 2
         left = left - K.dot(self.model.H(prior.x)).dot(left)
-        compared = Compared(prior_s, z)
-        return LiteralState(tick, x, P, prior, left, past, used | 1 << s, compared)
+        return LiteralState(tick, x, P, prior, left, past, used | 1 << s, Innovation(v, S))
 
     def innovation(self, state: LiteralState) -> Innovation | None:
         """z_s - h(x^-_s)."""
-        return innovation(self.model, state.compared)
+        return state.innovation

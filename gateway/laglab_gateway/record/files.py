@@ -25,9 +25,11 @@ ARRIVALS_FILE = "arrivals.csv"
 CLAIMS_FILE = "claims.csv"
 TIMING_FILE = "timing.csv"
 
+TOGETHER = 8
+"""Ticks that are written together, for a fraction of the cost: no more, or the station would be
+ready before they are."""
 PAUSE = 0.005
-"""[s] Between two writes: ticks that follow each other faster go there together, which costs a
-fraction; a robot's at its own pace go one by one."""
+"""[s] After so long a tick is written alone: as a robot's are at its own pace."""
 
 R = TypeVar("R")
 
@@ -93,9 +95,10 @@ class FileRecorder(Recorder):
     """Writes `trace.csv` and `robot.tlog` into a directory; `link.csv`, `arrivals.csv`,
     `claims.csv` and `timing.csv` if there is something to say.
 
-    Records are kept until a `flush` that comes PAUSE after the one before; then all of a file's go
-    there in one unbuffered write: a process killed at any moment leaves whole rows and records, up
-    to a moment before. Once one of the files cannot be written, nothing more is recorded.
+    Records are kept until a `flush` that comes PAUSE after the last write, or finds TOGETHER ticks;
+    then all of a file's go there in one unbuffered write: a process killed at any moment leaves
+    whole rows and records, up to a moment before. Once one of the files cannot be written, nothing
+    more is recorded.
     """
 
     def __init__(self, directory: Path) -> None:
@@ -144,9 +147,9 @@ class FileRecorder(Recorder):
         self._others[name].waiting += rows
 
     def flush(self) -> None:
-        """Write what has been kept, unless that was done a moment ago."""
+        """Write what has been kept, unless it is little and that was done a moment ago."""
         now = monotonic()
-        if now - self._written >= PAUSE:
+        if now - self._written >= PAUSE or len(self._trace.waiting) >= TOGETHER:
             self._written = now
             self._write()
 
