@@ -62,7 +62,9 @@ class Told(NamedTuple):
 
     def usual_delay(self, otherwise: int) -> int:
         """n, the median; before the first echo what was believed `otherwise`."""
-        return sorted(self.recent)[len(self.recent) // 2] if self.recent else otherwise
+        if not self.recent:
+            return otherwise
+        return sorted(self.recent)[len(self.recent) // 2] if self.spread else self.recent[0]
 
     @property
     def settled(self) -> int:
