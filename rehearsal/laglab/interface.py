@@ -29,6 +29,7 @@ def run(
     out: str | Path | None = None,
     progress: bool = False,
     *,
+    force: bool = False,
     controller: MakeController = Controller,
 ) -> Run:
     """Rehearse a scenario, given itself, by its shipped name or by its file.
@@ -39,6 +40,7 @@ def run(
         out: the folder for the results, which must not hold another run's; None keeps them in
             memory.
         progress: show it on standard error.
+        force: take the folder's other run away.
         controller: what computes the station's answers, for a run in memory.
 
     Raises:
@@ -60,7 +62,7 @@ def run(
             ending = rehearse_inline(chosen, recorder, told, controller=controller)
             return _whole(ending, keep(chosen, way, ending, recorder))
         if out is not None:
-            directory = place(chosen, Path(out))
+            directory = place(chosen, Path(out), force)
         else:
             directory = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="laglab-")))
         ending = run_into(directory, chosen, transport, told)

@@ -125,6 +125,14 @@ def test_what_is_wrong_is_said_by_an_error_of_ours(tmp_path: Path) -> None:
         laglab.run("fig6", out=tmp_path / "file")
 
 
+def test_another_runs_results_are_replaced_when_asked(tmp_path: Path) -> None:
+    laglab.run("fig6", {"duration": 0.1}, out=tmp_path)
+    with pytest.raises(laglab.PlaceError, match="force=True"):
+        laglab.run("fig6", {"duration": 0.2}, out=tmp_path)
+    laglab.run("fig6", {"duration": 0.2}, out=tmp_path, force=True)
+    assert laglab.open_run(tmp_path).summary.ticks == 20
+
+
 def test_a_diverged_run_is_a_result() -> None:
     run = laglab.run("fig8", {"estimator.initial_covariance": 0.1, "duration": 60.0})
     assert run.summary.outcome == "diverged"

@@ -29,7 +29,7 @@ def place(scenario: Scenario, out: Path | None, force: bool = False, suffix: str
         if not force and (taken := [name for name in OURS if (directory / name).exists()]):
             raise PlaceError(
                 f"--out {out}: another run's results are there already ({', '.join(taken)}): take "
-                "another folder, or say --force"
+                "another folder, or say --force (in Python force=True)"
             )
     try:
         shadows = directory.glob("shadow-*.csv")
