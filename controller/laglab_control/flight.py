@@ -168,9 +168,11 @@ def _heard(told: Told, echo: Echo, tick: int) -> Told:
     """With one more echo. A command that is held, for want of a newer one, tells nothing of n."""
     recent, newest, known, missing, in_force, before, usual, spread = told
     made = echo.command_tick
-    if made is not None and made > newest and 0 <= echo.tick - made < MEMORY:
-        recent, newest = (*recent, echo.tick - made)[-RECENT:], made
-        spread = _deviation(recent) if spread or recent[-1] != recent[0] else 0.0
+    if made is not None and made > newest and 0 <= (delay := echo.tick - made) < MEMORY:
+        newest = made
+        if spread or delay not in recent or len(recent) < RECENT:
+            recent = (*recent, delay)[-RECENT:]
+            spread = _deviation(recent) if spread or delay != recent[0] else 0.0
     if echo.tick <= known:
         return Told(recent, newest, known, missing, in_force, before, usual, spread)
     if echo.tick > known + 1:
