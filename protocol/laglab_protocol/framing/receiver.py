@@ -50,6 +50,8 @@ class Receiver:
         self._nested = 0
         self._aligned = True
         """Whether what is kept stands right behind a frame."""
+        self._within = 0
+        """If not: so many bytes stand inside a frame that was refused."""
         self._verifier = verifier
         self._rest = b""
         self._frames = 0
@@ -83,19 +85,8 @@ class Receiver:
         longer than a frame takes; an unfinished frame is given up, and what its start byte hid is
         found. Otherwise at most one unfinished frame is kept: under 300 bytes.
         """
-        frames = self._scan(self._rest + data if self._rest else data)
-        while whole and self._rest:
-            # Of what was none only the start byte is given up: there may be frames behind it.
-            self._refused[Refusal.INCOMPLETE] += 1
-            self._noise += 1
-            frames += self._scan(self._rest[1:], aligned=False, within=len(self._rest) - 1)
-        self._aligned = self._aligned or whole
-        return frames
-
-    def _scan(self, buffer: bytes, aligned: bool | None = None, within: int = 0) -> list[Frame]:
-        """The frames in the buffer; what is unfinished is kept. What stands before `within` stands
-        inside a frame that was refused."""
-        boundary = 0 if (self._aligned if aligned is None else aligned) else -1
+        buffer = self._rest + data if self._rest else data
+        boundary, within = (0, 0) if self._aligned else (-1, self._within)
         self._rest = b""
         verifier, expected = self._verifier, self._expected
         signed_too = verifier is not None
@@ -114,7 +105,8 @@ class Receiver:
                     self._out_of_sequence(peer, sequence)
                 frames.append(found)
                 position = boundary = position + len(found.raw)
-                self._nested += position <= within
+                if within:
+                    self._nested += position <= within
             elif found is Refusal.INCOMPLETE:
                 self._rest = buffer[position:]
                 break
@@ -123,6 +115,22 @@ class Receiver:
                 boundary, within = (position if position == end else boundary), max(within, end)
         self._aligned = position == boundary
         self._frames += len(frames)
+        if whole:
+            if self._rest:
+                frames += self._given_up()
+            self._aligned = True
+        return frames
+
+    def _given_up(self) -> list[Frame]:
+        """Of what was no frame only the start byte is: the frames behind it."""
+        frames: list[Frame] = []
+        while self._rest:
+            self._refused[Refusal.INCOMPLETE] += 1
+            self._noise += 1
+            behind, self._rest = self._rest[1:], b""
+            self._aligned, self._within = False, len(behind)
+            frames += self.receive(behind)
+        self._within = 0
         return frames
 
     def _refuse(
