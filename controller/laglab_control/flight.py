@@ -73,6 +73,13 @@ class Told(NamedTuple):
         return missing[0] - 1 if len(missing) > FEW else self.known
 
 
+class Sums(NamedTuple):
+    """Of all inputs sent so far."""
+
+    v: float
+    omega: float
+
+
 class Flight(NamedTuple):
     """All commands sent by now; the next tick is `tick`. Immutable."""
 
@@ -82,6 +89,8 @@ class Flight(NamedTuple):
     command_delay: int
     """n as the echoes have it: their median, or what the station was told before the first."""
     told: Told
+    sums: Log[Sums]
+    """Of v and omega over `sent`, up to each."""
     in_flight: SlidingProduct[Vector, Way[float]]
     """u_{tick-n} ... u_{tick-1}: standing still for what was sent before tick 0."""
     ahead: Way[float]
@@ -100,7 +109,7 @@ def take_off(robot: Ways, command_delay: int, horizon: int = 0) -> Flight:
     """Before the first command; `horizon` ticks are planned with each."""
     nothing: SlidingProduct[Vector, Way[float]] = SlidingProduct(joined, NOWHERE)
     plans = no_plans(horizon) if horizon else None
-    flight = Flight(0, logged(), command_delay, Told(), nothing, NOWHERE, plans)
+    flight = Flight(0, logged(), command_delay, Told(), logged(), nothing, NOWHERE, plans)
     return _rebuilt(robot, flight)
 
 
@@ -111,13 +120,13 @@ def send(
 
     Where commands plan ahead, `plan` begins with the command itself.
     """
-    tick, sent, n, told, in_flight, _, plans = flight
+    tick, sent, n, told, sums, in_flight, _, plans = flight
     if plans:
         plans, u = plans.send(plan)
-    sent = append(sent, u, MEMORY)
+    sent, sums = append(sent, u, MEMORY), append(sums, _added(sums, u), MEMORY)
     applied, in_flight = in_flight.push(u, robot.way(u)).pop()
     ahead = in_flight.product
-    return Flight(tick + 1, sent, n, told, in_flight, ahead, plans), applied
+    return Flight(tick + 1, sent, n, told, sums, in_flight, ahead, plans), applied
 
 
 def hear(
@@ -133,12 +142,12 @@ def hear(
     """
     if not (echoes or recalled):
         return flight, []
-    tick, sent, n, told, in_flight, ahead, plans = flight
+    tick, sent, n, told, sums, in_flight, ahead, plans = flight
     told, inputs = learned(told, tick, echoes, recalled)
     seen = told.usual_delay(otherwise=flight.usual_delay)
     if plans and seen >= n:  # the robot is that far on in its plans
         plans, seen = plans.late(seen - n), n
-    flight = Flight(tick, sent, seen, told, in_flight, ahead, plans)
+    flight = Flight(tick, sent, seen, told, sums, in_flight, ahead, plans)
     if seen == n:
         return flight, inputs
     flight = _rebuilt(robot, flight)
@@ -200,6 +209,14 @@ def _believed(flight: Flight, since: int) -> list[Applied]:
     return [Applied(tick, u[tick - since]) for tick in range(since, flight.tick)]
 
 
+def _added(sums: Log[Sums], u: Vector) -> Sums:
+    v, omega = u.tolist()
+    if not sums.length:
+        return Sums(v, omega)
+    before = sums.newest
+    return Sums(before.v + v, before.omega + omega)
+
+
 def believed_at(flight: Flight, tick: int) -> Vector:
     """The input (2,) believed to be in force on [t_tick, t_{tick+1}), tick < `flight.tick`."""
     items, length = flight.sent
@@ -207,11 +224,14 @@ def believed_at(flight: Flight, tick: int) -> Vector:
     return items[index] if 0 <= index < length else STAND
 
 
-def believed_sum(flight: Flight, since: int) -> tuple[float, float]:
-    """v and omega, each summed over the ticks from `since` < `flight.tick` on, as believed."""
-    sent = _sent_since(flight, since - flight.command_delay)
-    v, omega = np.sum(sent[: flight.tick - since], axis=0).tolist()
-    return v, omega
+def believed_sum(flight: Flight, since: int) -> Sums:
+    """Of the inputs believed to have been in force from tick `since` to the present."""
+    items, length = flight.sums
+    last = length - 1 - flight.command_delay
+    first = last - (flight.tick - since)
+    newest = items[last] if last >= 0 else Sums(0.0, 0.0)
+    oldest = items[first] if first >= 0 else Sums(0.0, 0.0)
+    return Sums(newest.v - oldest.v, newest.omega - oldest.omega)
 
 
 def _sent_since(flight: Flight, tick: int) -> list[Vector]:
