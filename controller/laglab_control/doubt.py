@@ -7,6 +7,7 @@ which d d^T is claimed. A robot that has plans does as believed as long as they 
 applies then is in all of them.
 """
 
+import math
 from collections.abc import Iterator
 from typing import Generic, NamedTuple
 
@@ -94,6 +95,6 @@ def _untold(flight: Flight, Ts: float) -> Missed[float]:
     missing = flight.told.missing
     v, omega = flight.told.before.tolist()
     inputs = [believed_at(flight, tick).tolist() for tick in missing]
-    distance = Ts * sum(each[0] - v for each in inputs)
-    turn = Ts * sum(each[1] - omega for each in inputs)
+    distance = Ts * math.fsum(each[0] - v for each in inputs)
+    turn = Ts * math.fsum(each[1] - omega for each in inputs)
     return Missed(distance, turn, Ts * len(missing) * abs(v))
