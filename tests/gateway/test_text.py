@@ -12,7 +12,7 @@ Cell = int | float | str | None
 numbers = st.floats() | st.integers(-(2**63), 2**63 - 1)
 small = st.floats(-2e-4, 2e-4)
 large = st.floats(1e15, 1e17)
-words = st.sampled_from(["command", "not finite", "no", ""])
+words = st.sampled_from(["command", "not finite", "no", "", "drive2"])
 rows = st.tuples(*[numbers | small | large | st.none(), small, large, words, numbers | st.none()])
 
 

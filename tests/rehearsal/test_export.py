@@ -1,6 +1,7 @@
 """A run in other programs' formats: they read back what it holds."""
 
 import csv
+import io
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -13,9 +14,10 @@ import scipy.io
 
 import laglab
 from laglab.export import export
+from laglab.export.csv_files import write_csv
 from laglab.export.formats import FORMATS
-from laglab.export.tables import tables
-from laglab.results.meaning import FILES, tick_columns
+from laglab.export.tables import Table, tables
+from laglab.results.meaning import FILES, Column, tick_columns
 from laglab.results.run import Run
 from laglab.results.shadows import COLUMNS
 from laglab_gateway import ROWS, TRACE_FILE, TraceRow
@@ -169,6 +171,14 @@ def test_tables_without_a_row_have_their_columns() -> None:
     assert len(read["ticks"].x) == 4
     assert np.isnan(read["ticks"].p_xx).all()
     assert read["arrivals"].tick.size == 0
+
+
+def test_a_column_is_called_what_it_is_called() -> None:
+    """Not what its name would be as a number: somebody's filter may be called Drive2."""
+    name, file = "x_drive2", io.BytesIO()
+    column = Column(name, "m", "Where it is.")
+    write_csv(Table("ticks", [column], [{name: np.array([1e-7])}], "run"), file)
+    assert file.getvalue() == b"x_drive2\n1e-07\n"
 
 
 def test_of_a_run_on_the_wall_clock_each_tick_has_its_lateness() -> None:

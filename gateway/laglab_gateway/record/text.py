@@ -8,14 +8,14 @@ from msgspec.json import Encoder
 
 Cell = int | float | str | None
 _encode = Encoder().encode
-_EXPONENT = re.compile(rb"e(-?)(\d+)")
+_EXPONENT = re.compile(rb"e(?<=\de)(-?)(\d+)")
 _SMALL = re.compile(rb"0\.0000(?<!\d0\.0000)\d+")
 """Both begin with what the search can leap to."""
 
 
 def csv_lines(rows: Sequence[tuple[Cell, ...]]) -> bytes:
     """A line each. A number is what its `repr` is, the shortest text that reads back to the same
-    double; None is an empty cell; a text is a word or some, without quotes, commas or brackets."""
+    double; None is an empty cell; a text is a word or some, of letters and blanks."""
     if not rows:
         return b""
     text = _encode(rows)

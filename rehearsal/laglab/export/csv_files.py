@@ -8,7 +8,7 @@ from laglab_gateway import csv_lines
 
 def write_csv(table: Table, file: BinaryIO) -> None:
     """The header, and a line a row."""
-    file.write(csv_lines([tuple(column.name for column in table.columns)]))
+    file.write((",".join(column.name for column in table.columns) + "\n").encode())
     for piece in table.pieces:
         columns = (map(_cell, column.tolist()) for column in piece.values())
         file.write(csv_lines(list(zip(*columns, strict=True))))

@@ -59,7 +59,7 @@ def kept_rows(rows: Iterable[ShadowRow], path: Path) -> Iterator[ShadowRow]:
     """
     upper = np.triu_indices(3)
     with whole_file(path) as file:
-        file.write(csv_lines([COLUMNS]))
+        file.write((",".join(COLUMNS) + "\n").encode())
         for row in rows:
             file.write(csv_lines([(row.tick, *row.x.tolist(), *row.P[upper].tolist())]))
             yield row
