@@ -41,14 +41,17 @@ def stack() -> Iterator[ExitStack]:
 
 
 @pytest.fixture
-def start_program(tmp_path: Path) -> Iterator[Start]:
-    """Start a program in the background; whatever still runs at the end is ended."""
+def start_program(tmp_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Start]:
+    """Start a program in the background; whatever still runs at the end is ended, and what it then
+    leaves is where pytest's own folders are."""
     running: list[subprocess.Popen[str]] = []
+    temporary = str(tmp_path_factory.mktemp("tmp"))
 
     def call(*command: object) -> "subprocess.Popen[str]":
         process = subprocess.Popen(
             list(map(str, command)),
             cwd=tmp_path,
+            env=os.environ | {"TMPDIR": temporary},
             stderr=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,

@@ -153,7 +153,11 @@ def browser(program: str, folder: Path) -> Iterator[Browser]:
     sandbox = ["--no-sandbox"] if os.geteuid() == 0 else []
     command = [program, *OPTIONS, *sandbox, f"--user-data-dir={folder}", "about:blank"]
     process = subprocess.Popen(
-        command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+        command,
+        env=os.environ | {"TMPDIR": str(folder)},  # killed, it leaves a folder there
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
     )
     try:
         yield Browser(_port(folder / "DevToolsActivePort", process))

@@ -80,6 +80,12 @@ def children() -> dict[int, bytes]:
     }
 
 
+@pytest.fixture(autouse=True)
+def temporaries(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Who is killed while it starts leaves what it had unpacked."""
+    monkeypatch.setenv("TMPDIR", str(tmp_path_factory.mktemp("tmp")))
+
+
 def command_line(number: int) -> bytes:
     """Nothing, if it has ended meanwhile."""
     try:

@@ -53,7 +53,8 @@ class Cluster:
     def worker(self, address: str) -> "subprocess.Popen[str]":
         """One, of one thread."""
         program = ("-m", "distributed.cli.dask_worker", address, "--host", "127.0.0.1")
-        return self._program(*program, "--no-dashboard", "--no-nanny", "--nthreads", "1")
+        here = ("--local-directory", str(self._folder))
+        return self._program(*program, *here, "--no-dashboard", "--no-nanny", "--nthreads", "1")
 
     def sweep(self, address: str) -> "subprocess.Popen[str]":
         """The client."""

@@ -151,10 +151,10 @@ class FileRecorder(Recorder):
         now = monotonic()
         if now - self._written >= PAUSE or len(self._trace.waiting) >= TOGETHER:
             self._written = now
-            self._write()
+            self.write()
 
-    def _write(self) -> None:
-        """Write all that has been kept."""
+    def write(self) -> None:
+        """Write all that has been kept, now."""
         try:
             for file in self._files:
                 file.flush()
@@ -166,7 +166,7 @@ class FileRecorder(Recorder):
     def close(self) -> None:
         """Write the rest, and close all files."""
         try:
-            self._write()
+            self.write()
         finally:
             for file in self._files:
                 file.give_up()

@@ -47,7 +47,7 @@ class StationRecord(Onlooker):
     def close(self) -> None:
         """What was heard, once more as a run's tables. Raises TraceError."""
         try:
-            self._recorder.flush()
+            self._recorder.write()
             session = read_session(self._directory / TLOG_FILE)
             record_session(session, self._sample_time, self._recorder)
         finally:

@@ -5,6 +5,7 @@ import logging
 import socket
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
+from tempfile import TemporaryDirectory
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -31,7 +32,8 @@ def cluster(address: str, workers: int = 0) -> Iterator[Executor]:
         logging.getLogger(name).setLevel(logging.CRITICAL)
     with ExitStack() as stack:
         if address == OURS:
-            address = stack.enter_context(_own(workers)).scheduler_address
+            folder = stack.enter_context(TemporaryDirectory(prefix="laglab-dask-"))
+            address = stack.enter_context(_own(workers, folder)).scheduler_address
         else:
             _look_for(address)
         try:
@@ -72,12 +74,14 @@ def _nobody(address: str) -> RefusedError:
     )
 
 
-def _own(workers: int) -> Any:
+def _own(workers: int, folder: str) -> Any:
+    """What its workers put aside goes into the folder."""
     import distributed
 
     return distributed.LocalCluster(
         n_workers=workers or cores(),
         threads_per_worker=1,
+        local_directory=folder,
         dashboard_address="127.0.0.1:0",  # without one it would take a fixed port, and warn
         scheduler_kwargs={"dashboard": False},
         silence_logs=logging.CRITICAL,
