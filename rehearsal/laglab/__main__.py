@@ -1,9 +1,8 @@
 """``laglab``, and ``python -m laglab``: Ctrl-C ends it in one line from the first moment on."""
 
-import signal
 import sys
 
-from laglab.interrupts import leave, on_interrupt
+from laglab.interrupts import deafen, leave, on_interrupt
 
 
 def main() -> None:
@@ -15,7 +14,7 @@ def main() -> None:
         code = run_command(None)
     except KeyboardInterrupt:
         leave()
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # it is over: there is nothing left to interrupt
+    deafen()  # it is over: there is nothing left to interrupt
     sys.exit(code)
 
 

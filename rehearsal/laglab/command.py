@@ -106,9 +106,9 @@ def run_command(arguments: list[str] | None) -> int:
 
 def _exit_code(arguments: list[str] | None) -> int:
     try:
-        on_interrupt(signal.default_int_handler)
         asked = spelled_out(sys.argv[1:] if arguments is None else arguments)
         app = app_of(_asked_for(asked))
+        on_interrupt(signal.default_int_handler)
         code = int(app(asked, prog_name="laglab", standalone_mode=False) or 0)
     except typer.TyperException as error:
         return _say(error.format_message(), error.exit_code)

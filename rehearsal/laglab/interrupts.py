@@ -17,6 +17,13 @@ def on_interrupt(handler: Callable[..., object]) -> None:
             signal.signal(number, handler)
 
 
+def deafen() -> None:
+    """No Ctrl-C from now on, and none that came before: one that met Python while it executed a
+    string, as it does to make a dataclass, would be sent once more at its very end."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    exec("")  # with the next string it forgets that one
+
+
 def leave(*_: object) -> NoReturn:
     """At once, while there is nothing to end in order. No exception: the loading of modules runs
     code through which none passes."""

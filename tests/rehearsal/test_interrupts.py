@@ -167,3 +167,11 @@ def test_the_two_sides_of_a_run_without_end_meet_too(
     wait_for_rows(tmp_path / "run" / "trace.csv")
     gateway.send_signal(signal.SIGINT)
     assert gateway.wait(10) == station.wait(10) == 130
+
+
+def test_an_interrupt_that_meets_a_string_is_no_other(tmp_path: Path) -> None:
+    """Where a dataclass is made, say: Python would end itself by the signal, whatever we return."""
+    (tmp_path / "eager.py").write_text('exec("raise KeyboardInterrupt")\n')
+    laglab = (sys.executable, "-m", "laglab", "run", "fig6", "--estimator", "eager:Filter")
+    ended = subprocess.run(laglab, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stderr) == (130, "laglab: interrupted\n")
