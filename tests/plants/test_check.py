@@ -118,8 +118,15 @@ def test_a_robot_of_arrays_of_one_is_found_out(check: Check) -> None:
     ],
 )
 def test_what_is_wrong_is_the_exit_code(
-    check: Check, fmus: Path, parameter: str, code: int, said: str
+    check: Check,
+    fmus: Path,
+    parameter: str,
+    code: int,
+    said: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    monkeypatch.setenv("TMPDIR", str(tmp_path))  # what crashes leaves what it had unpacked
     found, out, err = check(fmus / "rover.fmu", "--set", f"plant.parameters.{parameter}")
     assert found == code
     assert said in out + err
