@@ -66,13 +66,17 @@ def _free(ports: dict[str, str], written: str) -> str:
 
 
 def _shell(script: str, folder: Path) -> None:
-    """With this environment's programs first; what it leaves in the background is ended."""
+    """With this environment's programs first; what it leaves in the background is ended, and its
+    temporary files are gone."""
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
-    with tempfile.TemporaryFile("w+") as said:
+    with (
+        tempfile.TemporaryFile("w+") as said,
+        tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as temporary,
+    ):
         process = subprocess.Popen(
             ["bash", "-euo", "pipefail", "-c", script],
             cwd=folder,
-            env={**os.environ, "PATH": path, "LAGLAB": str(ROOT)},
+            env={**os.environ, "PATH": path, "LAGLAB": str(ROOT), "TMPDIR": temporary},
             stdout=said,
             stderr=subprocess.STDOUT,
             start_new_session=True,
