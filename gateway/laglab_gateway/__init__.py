@@ -46,7 +46,7 @@ from laglab_gateway.record.files import (
 from laglab_gateway.record.lateness import TimingReport
 from laglab_gateway.record.recorder import MemoryRecorder, Recorder, Tapped
 from laglab_gateway.record.rows import FOLLOWED, ArrivalRow, ClaimRow, TimingRow, claimed
-from laglab_gateway.record.text import csv_lines
+from laglab_gateway.record.text import csv_header, csv_lines
 from laglab_gateway.record.trace import (
     Trace,
     TraceRow,
@@ -128,6 +128,7 @@ __all__ = [
     "Watch",
     "Watcher",
     "claimed",
+    "csv_header",
     "csv_lines",
     "first_tick",
     "read_link_log",

@@ -14,7 +14,7 @@ from laglab_gateway.errors import TraceError
 from laglab_gateway.link.log import LinkRow
 from laglab_gateway.record.recorder import Recorder
 from laglab_gateway.record.rows import ArrivalRow, ClaimRow, TimingRow
-from laglab_gateway.record.text import csv_lines
+from laglab_gateway.record.text import csv_header, csv_lines
 from laglab_gateway.record.trace import TraceRow
 from laglab_protocol import tlog_record
 
@@ -87,8 +87,7 @@ ROWS: dict[str, type[Row]] = {
 
 
 def _csv(path: Path, fields: tuple[str, ...]) -> _File[Row]:
-    header = ",".join(fields) + "\n"
-    return _File(path, header.encode(), csv_lines)
+    return _File(path, csv_header(fields), csv_lines)
 
 
 class FileRecorder(Recorder):

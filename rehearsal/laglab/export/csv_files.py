@@ -3,12 +3,12 @@
 from typing import BinaryIO
 
 from laglab.export.tables import Table
-from laglab_gateway import csv_lines
+from laglab_gateway import csv_header, csv_lines
 
 
 def write_csv(table: Table, file: BinaryIO) -> None:
     """The header, and a line a row."""
-    file.write((",".join(column.name for column in table.columns) + "\n").encode())
+    file.write(csv_header(column.name for column in table.columns))
     for piece in table.pieces:
         columns = (map(_cell, column.tolist()) for column in piece.values())
         file.write(csv_lines(list(zip(*columns, strict=True))))

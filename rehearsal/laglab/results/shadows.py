@@ -14,7 +14,7 @@ from laglab.results.summary import Errors
 from laglab.runs.station_side import shadow_config
 from laglab.scenario import Scenario
 from laglab_control import PluginFailedError
-from laglab_gateway import Trace, csv_lines
+from laglab_gateway import Trace, csv_header, csv_lines
 from laglab_station import SessionTick, ShadowRow, shadow
 
 COLUMNS = ("tick", *AXES, *COVARIANCE)
@@ -59,7 +59,7 @@ def kept_rows(rows: Iterable[ShadowRow], path: Path) -> Iterator[ShadowRow]:
     """
     upper = np.triu_indices(3)
     with whole_file(path) as file:
-        file.write((",".join(COLUMNS) + "\n").encode())
+        file.write(csv_header(COLUMNS))
         for row in rows:
             file.write(csv_lines([(row.tick, *row.x.tolist(), *row.P[upper].tolist())]))
             yield row
