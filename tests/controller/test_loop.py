@@ -124,21 +124,26 @@ def test_a_robot_that_leaves_when_it_hears_of_the_end_is_not_waited_for(tmp_path
 
 @pytest.fixture
 def waiting():
-    """A station that waits at an address of its own, and what its run gave."""
+    """A station that waits at an address of its own, and a call that awaits what its run gave."""
     results = []
     with open_endpoint("udpin://127.0.0.1:0") as endpoint:
         thread = threading.Thread(
             target=run, args=(endpoint, results), kwargs={"silence_timeout": 3.0}
         )
         thread.start()
-        yield endpoint.name.replace("udpin", "udpout"), results
+
+        def outcome():
+            thread.join(5)
+            return results
+
+        yield endpoint.name.replace("udpin", "udpout"), outcome
         thread.join(5)
 
 
 @pytest.mark.parametrize("speaker", [(7, 1), (1, 1)])
 def test_a_tick_of_somebody_who_never_answers_locks_no_station(waiting, speaker):
     """Not even in the robot's name: when the robot comes, it is met."""
-    url, results = waiting
+    url, outcome = waiting
     with open_endpoint(url) as stranger:
         stranger.send(Sender(*speaker).frame(Tick(5000, 0)))
     time.sleep(IN_FORCE)
@@ -151,4 +156,4 @@ def test_a_tick_of_somebody_who_never_answers_locks_no_station(waiting, speaker)
             heard = receiver.receive(robot.receive(0.1), True)
             assert time.monotonic() < until
         drive(robot, Tick(1, 0), End(1, EndReason.COMPLETED))
-    assert results == [End(1, EndReason.COMPLETED)]
+    assert outcome() == [End(1, EndReason.COMPLETED)]

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from laglab_protocol import (
@@ -62,15 +62,21 @@ def test_any_cutting_of_a_stream(sent: list[Message], data: st.DataObject) -> No
     assert [frame.message for frame in received] == sent
 
 
+@pytest.mark.parametrize("nested", [True, False])
 @given(st.lists(st.binary(max_size=40), min_size=4, max_size=4))
-def test_garbage_between_frames_costs_no_frame(garbage: list[bytes]) -> None:
+@example([b"\xfd\x2e\x01" + bytes(8), b"", b"", b""])  # a header whose frame ends with the first
+def test_garbage_between_frames_costs_no_frame(nested: bool, garbage: list[bytes]) -> None:
+    """But one that, by the garbage before it, is inside another: that is delivered on request."""
     sent = frames_of(3)
     mixed = garbage[0] + b"".join(map(bytes.__add__, sent, garbage[1:]))
-    receiver = Receiver()
+    receiver = Receiver(nested=nested)
 
     received = raws(receiver.receive(mixed, whole=True))
 
-    assert [raw for raw in received if raw in sent] == sent
+    inside = receiver.counters.refused.get(Refusal.NESTED, 0)
+    assert not (nested and inside)
+    assert [raw for raw in sent if raw in received] == [raw for raw in received if raw in sent]
+    assert sum(raw in received for raw in sent) == len(sent) - inside
     assert receiver.counters.noise == len(mixed) - sum(map(len, received))
 
 
