@@ -12,6 +12,11 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+# No deadline for one example: machines are shared, and now and then one stands still.
+settings.register_profile("shared", deadline=None)
+settings.load_profile("shared")
 
 ROOT = Path(__file__).parents[1]
 COMPONENTS = ("fmu", "protocol", "gateway", "controller", "rehearsal")

@@ -56,7 +56,7 @@ def links(draw):
     return {k: draw(st.permutations(batch)) for k, batch in arrivals.items() if k <= TICKS}
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(links())
 def test_popf_does_what_its_equations_say(arrivals):
     fast, literal = (run(popf(ROBOT), arrivals) for popf in (Popf, LiteralPopf))
@@ -65,7 +65,7 @@ def test_popf_does_what_its_equations_say(arrivals):
     assert np.abs(fast.P - literal.P).max() < 1e-9 * scale
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(links())
 def test_delayed_ekf_is_the_ekf_that_had_everything_in_order(arrivals):
     used = {s: MEASUREMENTS[s] for batch in arrivals.values() for s in batch}

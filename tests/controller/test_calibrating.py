@@ -104,7 +104,7 @@ def assert_same(x, P, other_x, other_P, deviations=1e-8):
 
 
 @pytest.mark.parametrize("parameters", PARAMETERS)
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(delays=st.lists(st.one_of(st.none(), st.integers(0, 40)), min_size=1, max_size=40))
 def test_it_is_the_plain_ekf_of_pose_and_parameters(parameters, delays):
     """Whatever is lost or late, and in whatever order it comes. None is a loss."""

@@ -93,7 +93,7 @@ def test_the_loss_did_matter_meanwhile():
     assert errors[-1] < 1e-12
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.data(), st.sampled_from(["popf", "popf-exact", "delayed-ekf"]))
 def test_jitter_losses_repeats_and_disorder_leave_nothing_wrong(data, estimator):
     """Commands get lost, late and out of order; measurements late, out of order and twice. When

@@ -212,7 +212,7 @@ def test_what_the_robot_did_unheard_proves_nothing() -> None:
     assert guard.correct(known, [Measured(199, measured[199].z)], (), 198).alarm is None
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     late=st.lists(st.integers(0, 30), min_size=150, max_size=150),
     twice=st.sets(st.integers(1, 149)),

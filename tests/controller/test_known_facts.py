@@ -60,7 +60,6 @@ def test_popf_diverges_on_a_large_prior_where_delayed_ekf_does_not(simulate):
 
 @settings(
     max_examples=40,
-    deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
 @given(n=st.integers(0, 30), m=st.integers(0, 30), name=st.sampled_from(["popf", "delayed-ekf"]))

@@ -116,7 +116,7 @@ zero_or_not = st.sampled_from([0.0, 1e-12, 1e-3, 1.0])
 diagonal = st.tuples(zero_or_not, zero_or_not, zero_or_not).map(np.diag)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.sampled_from(OPTIMAL), diagonal, diagonal, st.sampled_from([0.0, 0.01]), st.integers(0, 4)
 )
@@ -139,7 +139,7 @@ anything = st.floats(allow_nan=True, allow_infinity=True)
 vectors = st.tuples(anything, anything, anything).map(np.array)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(
     st.sampled_from(FILTERS),
     st.lists(st.tuples(vectors, st.integers(0, 3)), max_size=6),
@@ -157,7 +157,7 @@ def test_no_float_makes_a_filter_raise(name, measurements, inputs):
             assert state.P.shape == (3, 3)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(st.sampled_from(list(ESTIMATORS)), st.lists(st.tuples(vectors, anything, anything)))
 def test_no_float_makes_a_station_raise(name, measured):
     """By wire; it goes on or ends the run as diverged, and never commands anything not finite."""

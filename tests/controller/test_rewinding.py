@@ -31,7 +31,7 @@ def same(a, b):
     assert np.abs(a.P - b.P).max() < 1e-10
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.data(), st.sampled_from(NAMES))
 def test_told_in_any_order_however_often(data, name):
     told = {}

@@ -50,9 +50,7 @@ def test_they_give_the_jacobians_of_the_paper(
     np.testing.assert_allclose(Ts * jacobian(face, DERIVATIVES, WHEELS), W, rtol=1e-14, atol=0)
 
 
-@settings(
-    max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     theta=st.floats(-7, 7),
     left=st.floats(-20, 20),

@@ -81,7 +81,7 @@ def run_with_steps(steps: list[float], parameters: RobotParameters) -> Reading:
         return robot.read()
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(parts=st.lists(st.integers(1, 400), min_size=1, max_size=20))
 def test_any_communication_step_samples_on_the_same_grid(parts: list[int]) -> None:
     """Measurement and noise are those of the sample last reached, however the way was cut."""

@@ -89,9 +89,7 @@ def checksum(data: bytes, token: str) -> int:
     return total
 
 
-@settings(
-    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_damaged_states_are_refused_or_harmless(
     make_face: Callable[..., Any], data: st.DataObject

@@ -64,7 +64,7 @@ def heard(frames: list[bytes]) -> list[Message]:
     return [frame.message for frame in Receiver().receive(b"".join(frames))]
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(n=st.integers(0, 35), m=st.integers(0, 35))
 def test_both_delays_are_exact(robot: Robot, n: int, m: int) -> None:
     gateway, station = gateway_of(robot, n, m), Station()

@@ -45,7 +45,7 @@ def bad_times(draw: st.DrawFn) -> tuple[list[dict[str, object]], float]:
 
 
 @pytest.mark.slow
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     times=bad_times(),
     delays=st.tuples(st.integers(0, 20), st.integers(0, 25)),

@@ -213,7 +213,7 @@ def test_the_strategies_know_every_key() -> None:
     assert known == {row.place for row in rows()}
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(table(TOP))
 def test_what_is_written_reads_back_to_the_same(folder: Path, fields: dict[str, Any]) -> None:
     scenario, file = at(folder, fields), folder / "written.toml"
@@ -222,7 +222,7 @@ def test_what_is_written_reads_back_to_the_same(folder: Path, fields: dict[str, 
         assert load(str(file)) == scenario
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(table(TOP))
 def test_what_a_scenario_allows_both_sides_take(folder: Path, fields: dict[str, Any]) -> None:
     told = {table: {**fields.get(table, {}), "options": {}} for table in ("estimator", "law")}
