@@ -1,6 +1,7 @@
 """`laglab plant check`: what it proposes runs, and what is wrong with a robot is its exit code."""
 
 import re
+import tempfile
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
@@ -126,12 +127,13 @@ def test_what_is_wrong_is_the_exit_code(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setenv("TMPDIR", str(tmp_path))  # what crashes leaves what it had unpacked
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     found, out, err = check(fmus / "rover.fmu", "--set", f"plant.parameters.{parameter}")
     assert found == code
     assert said in out + err
     assert not out.endswith("\n\n")
     assert err.count("\n") <= 1
+    assert list(tmp_path.iterdir()) == []  # what crashed had unpacked something
 
 
 def test_what_cannot_be_used(check: Check, tmp_path: Path, library: Path) -> None:

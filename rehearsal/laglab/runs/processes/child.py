@@ -3,16 +3,19 @@
 Not `multiprocessing`, which runs the caller's own script again in every child. Orders go in on the
 child's standard input, a line each, which stays open: its end, whatever became of us, asks the
 child to end in order. Reports come out on its standard output, a line each; what else is printed
-there goes to standard error.
+there goes to standard error. Its temporary files are in a folder of its own, which both clear: it
+may crash, and we may be killed.
 
-    python -m laglab.runs.processes.child MODULE:FUNCTION once|again
+    python -m laglab.runs.processes.child MODULE:FUNCTION once|again FOLDER
 """
 
 import importlib
 import os
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -75,21 +78,24 @@ def started(
 
     `again`: with each order that comes after it, too.
     """
-    process = subprocess.Popen(
-        [sys.executable, "-m", "laglab.runs.processes.child", target, "again" if again else "once"],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        start_new_session=True,  # a Ctrl-C in the terminal is for us, who end it
-    )
-    child = Child(name, process)
-    reader = threading.Thread(target=_read, args=(child, inbox), daemon=True)
-    reader.start()
-    try:
-        child.order(order)
-        yield child
-    finally:
-        _end(process)
-        reader.join()
+    arguments = (target, "again" if again else "once")
+    with tempfile.TemporaryDirectory(prefix="laglab-", ignore_cleanup_errors=True) as folder:
+        process = subprocess.Popen(
+            [sys.executable, "-m", "laglab.runs.processes.child", *arguments, folder],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            start_new_session=True,  # a Ctrl-C in the terminal is for us, who end it
+            env=os.environ | {"TMPDIR": folder},
+        )
+        child = Child(name, process)
+        reader = threading.Thread(target=_read, args=(child, inbox), daemon=True)
+        reader.start()
+        try:
+            child.order(order)
+            yield child
+        finally:
+            _end(process)
+            reader.join()
 
 
 def _end(process: "subprocess.Popen[bytes]") -> None:
@@ -139,6 +145,7 @@ def main(target: str, again: bool) -> None:
 
 def _leave(*_: object) -> NoReturn:
     """At once: there is nothing to end in order yet, or any more."""
+    shutil.rmtree(sys.argv[3], ignore_errors=True)
     os._exit(INTERRUPTED)
 
 
@@ -197,3 +204,5 @@ if __name__ == "__main__":
         main(sys.argv[1], sys.argv[2] == "again")
     except KeyboardInterrupt:
         _leave()
+    finally:
+        shutil.rmtree(sys.argv[3], ignore_errors=True)
