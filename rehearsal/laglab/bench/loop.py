@@ -1,7 +1,9 @@
 """How fast the loop is, against a bare echo of its bytes and against the same loop by hand."""
 
+import os
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import get_args
@@ -53,6 +55,12 @@ def _one_or_two(ticks: int) -> Iterator[Contest]:
         for name in ("fig6", "lab")
     }
     yield Contest("one process or two, once they run", TICK, "udp", running)
+    if hasattr(os, "sched_setaffinity"):
+        alone = {
+            name: {each: _on_one_processor(turn) for each, turn in turns.items()}
+            for name, turns in running.items()
+        }
+        yield Contest("the same on one processor", TICK, "udp", alone)
     yield Contest("one process or two, from call to result", Unit("s", 1.0), "udp", whole)
 
 
@@ -74,6 +82,26 @@ def _in_a_folder(turn: Callable[[Path], float]) -> Turn:
             return turn(Path(folder))
 
     return in_folder
+
+
+def _on_one_processor(turn: Turn) -> Turn:
+    """Of all that there are, for this process and those that it starts."""
+
+    def on_one() -> float:
+        with _bound_to(min(os.sched_getaffinity(0))):
+            return turn()
+
+    return on_one
+
+
+@contextmanager
+def _bound_to(processor: int) -> Iterator[None]:
+    before = os.sched_getaffinity(0)
+    os.sched_setaffinity(0, {processor})
+    try:
+        yield
+    finally:
+        os.sched_setaffinity(0, before)
 
 
 def _speeds(result: Result, cases: Sequence[str]) -> Iterator[Figure]:
