@@ -19,6 +19,10 @@ class Came(NamedTuple):
     measurements: tuple[Measurement, ...]
     recalled: tuple[protocol.Applied, ...]
 
+    def complete(self, tick: protocol.Tick) -> bool:
+        """Whether it is all that the tick tells of."""
+        return len(self.measurements) + len(self.recalled) == tick.measurements
+
 
 class Coming:
     """What has come since the last tick; the next one will tell whether it is whole."""
@@ -40,6 +44,28 @@ class Coming:
         self._measurements.clear()
         self._recalled.clear()
         return came
+
+
+class Overtaken:
+    """What ticks brought that were not answered, for a newer one had come meanwhile."""
+
+    def __init__(self) -> None:
+        self._came: deque[Came] = deque(maxlen=UNANNOUNCED)
+
+    def hear(self, came: Came) -> None:
+        """What one of them brought."""
+        self._came.append(came)
+
+    def take(self, newest: Came) -> Came:
+        """All of it, and then what the newest tick brought."""
+        if not self._came:
+            return newest
+        every = [*self._came, newest]
+        self._came.clear()
+        return Came(
+            tuple(each for came in every for each in came.measurements),
+            tuple(each for came in every for each in came.recalled),
+        )
 
 
 class PlayedOut:

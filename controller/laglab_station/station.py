@@ -26,7 +26,7 @@ from laglab_protocol import (
 )
 from laglab_station.alarms import Alarms
 from laglab_station.driver import Driver, MakeController
-from laglab_station.hearing import Came, Coming, PlayedOut
+from laglab_station.hearing import Came, Coming, Overtaken, PlayedOut
 from laglab_station.report import Calibrated, StationReport
 from laglab_station.saying import emergency_stop_for
 from laglab_station.warned import Warnings
@@ -35,13 +35,17 @@ LONGEST_GAP = MEMORY
 """Ticks without a word, after which nobody knows what the robot did meanwhile."""
 
 
+BEHIND = "was passed over: answers take longer than ticks, and a newer one had come"
+
+
 class Station:
     """Answers each tick of the robot once with ESTIMATE (unless `raw`) and COMMAND.
 
     A repeated tick gets the same answer and changes nothing. A tick whose measurements did not all
-    arrive gets none: the robot will repeat it. Everything else that arrives is passed over, and so
-    is every other sender once a robot was heard. A robot whose ticks begin again, or that was not
-    heard for LONGEST_GAP ticks, is met anew (docs/tick.md), each time by a `Driver` of its own.
+    arrive gets none: the robot will repeat it. Of ticks that have waited only the newest gets one.
+    Everything else that arrives is passed over, and so is every other sender once a robot was
+    heard. A robot whose ticks begin again, or that was not heard for LONGEST_GAP ticks, is met anew
+    (docs/tick.md), each time by a `Driver` of its own.
     """
 
     def __init__(
@@ -66,6 +70,7 @@ class Station:
         self.robot_settings: Settings | None = None
         self._robot: tuple[int, int] | None = None
         self._coming = Coming()
+        self._overtaken = Overtaken()
         self._played_out = PlayedOut(playout) if playout else None
         self._restart = Restart()
         self._answer: list[Message] = []
@@ -141,6 +146,16 @@ class Station:
             answers += self._hear(frame)
         return self._framed(answers)
 
+    def hear_backlog(self, frames: Sequence[Frame]) -> list[bytes]:
+        """As `hear`, of frames that have waited: their ticks but the newest are not answered any
+        more; what they brought is used all the same. Raises PluginFailedError."""
+        newest = max((said.tick for said in map(self._tick_in, frames) if said), default=0)
+        answers: list[Message] = []
+        for frame in frames:
+            if not self._is_overtaken(frame, newest):
+                answers += self._hear(frame)
+        return self._framed(answers)
+
     def look_ahead(self) -> None:
         """Do now, while the robot is busy, what the next answer would wait for.
 
@@ -188,6 +203,25 @@ class Station:
                 return [Timesync(self._clock(), asked)]
         return []
 
+    def _tick_in(self, frame: Frame) -> Tick | None:
+        """What our robot says in it, if that is a tick."""
+        said = frame.message
+        ours = (frame.system, frame.component) == self._robot
+        return said if ours and isinstance(said, Tick) else None
+
+    def _is_overtaken(self, frame: Frame, newest: int) -> bool:
+        """Whether it is a new tick, but not the newest; what it brought is then put aside."""
+        said = self._tick_in(frame)
+        if said is None or self.tick is None or not self.tick < said.tick < newest:
+            return False
+        self.warn("behind", f"tick {said.tick} {BEHIND}")
+        came = self._coming.take()
+        if came.complete(said):
+            if self._played_out:
+                came = self._played_out.take(said.tick, came)
+            self._overtaken.hear(came)
+        return True
+
     def _hear_end(self, end: End) -> list[Message]:
         """Answered once with the same; it may itself be the answer to ours. What ends a run that
         is past ends nothing."""
@@ -201,7 +235,7 @@ class Station:
 
     def _hear_tick(self, message: Tick) -> list[Message]:
         came = self._coming.take()
-        if len(came.measurements) + len(came.recalled) != message.measurements:
+        if not came.complete(message):
             return []
         if self._outcome is None and self._is_new(message.tick):
             self._meet(message.tick)
@@ -210,7 +244,7 @@ class Station:
         if self._outcome is None and (self.tick is None or message.tick > self.tick):
             if self._played_out:
                 came = self._played_out.take(message.tick, came)
-            self._answer_timed(message.tick, came)
+            self._answer_timed(message.tick, self._overtaken.take(came))
             return self._answer
         return []
 
