@@ -39,7 +39,8 @@ class StationReport(Struct, frozen=True):
     """Measurements that were too wild to be used."""
     late: int = 0
     """Measurements that came too late for play-out, and were not used."""
-    emergency_stop: bool = False
-    """Whether the robot said that somebody had stopped it for good."""
+    emergency_tick: int | None = None
+    """The last tick that was answered before the robot said that somebody had stopped it for good;
+    None if it never did."""
     calibration: tuple[Calibrated, ...] = ()
     """What the estimator has learned of the robot at the end; most learn nothing."""

@@ -123,7 +123,7 @@ class Station:
             alarms_raised=self._alarms.raised,
             gated=self._driver.gated,
             late=self._played_out.late if self._played_out else 0,
-            emergency_stop=self._warnings.emergency_stop,
+            emergency_tick=self._warnings.emergency_tick,
             calibration=learned,
         )
 
@@ -181,7 +181,7 @@ class Station:
     @property
     def robot_stopped(self) -> bool:
         """Whether the robot says that somebody stopped it for good."""
-        return self._warnings.emergency_stop
+        return self._warnings.emergency_tick is not None
 
     def _hear(self, frame: Frame) -> list[Message]:
         sender = (frame.system, frame.component)
@@ -198,7 +198,7 @@ class Station:
             case Settings():
                 self.robot_settings = frame.message
             case Statustext():
-                self._warnings.hear(frame.message)
+                self._warnings.hear(frame.message, self.tick or 0)
             case Timesync(tc1=0, ts1=asked) if self._clock:
                 return [Timesync(self._clock(), asked)]
         return []

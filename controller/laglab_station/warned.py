@@ -12,16 +12,17 @@ class Warnings:
     def __init__(self) -> None:
         self._texts: dict[str, str] = {}
         self._told = 0
-        self.emergency_stop = False
-        """Whether somebody stopped the robot for good."""
+        self.emergency_tick: int | None = None
+        """The tick by which somebody had stopped the robot for good, the first time."""
 
     def add(self, about: str, text: str) -> None:
         """Put a warning on record, unless there is one about this already."""
         self._texts.setdefault(about, text)
 
-    def hear(self, told: Statustext) -> None:
-        """What the robot itself says, if it is worse than a warning."""
-        self.emergency_stop |= told.severity == MAV_SEVERITY_EMERGENCY
+    def hear(self, told: Statustext, tick: int) -> None:
+        """What the robot itself says after its `tick`, if it is worse than a warning."""
+        if told.severity == MAV_SEVERITY_EMERGENCY and self.emergency_tick is None:
+            self.emergency_tick = tick
         text = told.text.decode(errors="replace")
         if told.severity > MAV_SEVERITY_ERROR or text in self._texts or self._told >= MOST_TOLD:
             return

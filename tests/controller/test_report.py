@@ -67,8 +67,9 @@ def test_ticks_are_timed_by_the_clock_given():
 def test_an_emergency_stop_is_noticed_however_much_the_robot_has_said():
     warnings = Warnings()
     for number in range(2 * MOST_TOLD):
-        warnings.hear(Statustext(MAV_SEVERITY_ERROR, f"text {number}".encode()))
+        warnings.hear(Statustext(MAV_SEVERITY_ERROR, f"text {number}".encode()), number)
     assert len(warnings.texts) == MOST_TOLD
-    assert not warnings.emergency_stop
-    warnings.hear(Statustext(MAV_SEVERITY_EMERGENCY, b"emergency stop"))
-    assert warnings.emergency_stop
+    assert warnings.emergency_tick is None
+    for tick in (100, 200):
+        warnings.hear(Statustext(MAV_SEVERITY_EMERGENCY, b"emergency stop"), tick)
+    assert warnings.emergency_tick == 100

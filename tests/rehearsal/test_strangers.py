@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 
+from laglab import open_run
 from laglab_protocol import (
     STATION_COMPONENT,
     STATION_SYSTEM,
@@ -194,6 +195,9 @@ def test_what_stops_the_robot_is_named_on_both_consoles(start: Start, tmp_path: 
     assert "no fresh command" not in station
     assert run.summary["link"]["refused"]["out of limits"] > 0
     assert run.summary["link"]["emergency_stops"] == 1
+    (at,) = open_run(tmp_path / "robot").emergencies
+    (heard,) = open_run(tmp_path / "station").emergencies
+    assert at <= heard < at + 20
 
 
 def test_a_robot_that_fails_is_the_controllers_failure_too(start: Start, tmp_path: Path) -> None:

@@ -85,8 +85,7 @@ def link_view(run: Run) -> LinkView:
         view.counts = went.counts[name] | (came.counts if name == "command" else {})
         view.outages = went.outages(name)
     stopped = [Span(at, min(until, end)) for at, until in came.stops.items()]
-    emergencies = times(link.emergency_ticks if link else ())
-    return LinkView(views, stopped, emergencies, times(run.alarms))
+    return LinkView(views, stopped, times(run.emergencies), times(run.alarms))
 
 
 class _Arrivals:

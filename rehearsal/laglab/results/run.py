@@ -123,6 +123,16 @@ class Run:
         station = self.summary.station
         return [alarm.tick for alarm in station.alarms] if station else []
 
+    @property
+    def emergencies(self) -> list[int]:
+        """The ticks at which somebody stopped the robot for good: as the robot counts them, or by
+        when a station alone was told."""
+        link, station = self.summary.link, self.summary.station
+        told = station.emergency_tick if station else None
+        if link or told is None:
+            return link.emergency_ticks if link else []
+        return [told]
+
     @cached_property
     def drawn(self) -> Trace:
         """As much of the trace as a figure shows."""

@@ -37,7 +37,8 @@ class Ending:
     def emergency_stop(self) -> bool:
         """Whether somebody stopped the robot for good, as far as this side knows."""
         link, station = self.link, self.station
-        return bool((link and link.emergency_stops) or (station and station.emergency_stop))
+        heard = station is not None and station.emergency_tick is not None
+        return heard or bool(link and link.emergency_stops)
 
     @property
     def exit_code(self) -> int:
