@@ -18,6 +18,7 @@ WidthOption = Annotated[
     Width,
     typer.Option(help="As wide as one column of a journal's page (3.3 in) or as two (7 in)."),
 ]
+SeedsOption = Annotated[int, typer.Option(min=1, max=10_000, help="Runs of each.")]
 WorkersOption = Annotated[int, typer.Option(min=0, max=1024, help="Processes; 0: one a core.")]
 
 KeyOption = Annotated[

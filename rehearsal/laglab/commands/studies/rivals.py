@@ -7,7 +7,13 @@ from typing import Annotated
 import typer
 
 from laglab.commands.on_scenario import on_scenario
-from laglab.commands.options import PictureOption, WidthOption, WorkersOption, chosen
+from laglab.commands.options import (
+    PictureOption,
+    SeedsOption,
+    WidthOption,
+    WorkersOption,
+    chosen,
+)
 from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, require
 from laglab.progress import tracked
@@ -32,7 +38,7 @@ from laglab.tables import terminal
 @partial(on_scenario, by_default="lab")
 def rivals(
     scenario: Scenario,
-    seeds: Annotated[int, typer.Option(min=1, max=10_000, help="Runs of each.")] = 20,
+    seeds: SeedsOption = 20,
     on: Annotated[
         list[str] | None,
         typer.Option(

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from laglab.commands.options import PictureOption, WorkersOption, checked, chosen
+from laglab.commands.options import PictureOption, SeedsOption, WorkersOption, checked, chosen
 from laglab.extras import REHEARSING, require
 from laglab.progress import tracked
 from laglab.results.figures import picture_place, save
@@ -24,9 +24,15 @@ from laglab_control import ESTIMATORS
 
 
 def trust(
-    seeds: Annotated[int, typer.Option(min=1, max=10_000, help="Runs of each.")] = 20,
+    seeds: SeedsOption = 20,
     only: Annotated[
-        list[str] | None, typer.Option("--only", metavar="CONDITION", help="Just this one.")
+        list[str] | None,
+        typer.Option(
+            "--only",
+            metavar="CONDITION",
+            help=f"Just this one; may be repeated: {', '.join(CONDITIONS)}.",
+            autocompletion=lambda: list(CONDITIONS),
+        ),
     ] = None,
     estimator: Annotated[
         str,
