@@ -21,7 +21,7 @@ from rich.progress import (
 )
 from rich.text import Text
 
-from laglab.runs.glance import Glance, Told
+from laglab.runs.glance import Glance, OnTick
 from laglab.scenario import Scenario
 from laglab.tables import terminal
 
@@ -37,7 +37,7 @@ ROOMY, NARROW = 72, 44
 
 
 @contextmanager
-def progress_of(scenario: Scenario, shown: bool = True) -> Iterator[Told]:
+def progress_of(scenario: Scenario, shown: bool = True) -> Iterator[OnTick]:
     """Shows the ticks that it is told of, if `shown`; of a run by the clock how it is."""
     with _bar("tick", shown) as bar:
         task = bar.add_task(scenario.name, total=scenario.last_tick, glance="")

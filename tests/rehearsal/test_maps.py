@@ -15,7 +15,7 @@ from laglab.studies.maps import draw_study, runs_of
 from laglab.studies.maps.drawing import margins
 from laglab.studies.maps.grid import fields, sorted_into
 from laglab.studies.maps.margin import excess
-from laglab.studies.maps.measures import Told, median, share
+from laglab.studies.maps.measures import MeasureValues, median, share
 from laglab.studies.maps.runs import Layout, layout
 from laglab.studies.sweep.folder import Folder
 from laglab.studies.sweep.study import Study
@@ -83,7 +83,7 @@ def test_a_cell_holds_its_own_runs():
     runs = study()
     into = sorted_into(runs, Layout(N, M, KIND, ()))
     assert (into.x, into.y, into.panels) == ([0, 10, 20], [0, 20], ["raw", "popf"])
-    raw, popf = fields(Told.by(runs, "converged"), into)
+    raw, popf = fields(MeasureValues.by(runs, "converged"), into)
     np.testing.assert_array_equal(raw.centre, [[1, 1, 0.25], [0.25, 0.25, 0.25]])
     np.testing.assert_array_equal(raw.diverged, 1 - raw.centre)
     assert (popf.centre == 1).all()
@@ -91,7 +91,7 @@ def test_a_cell_holds_its_own_runs():
 
 def test_a_diverged_run_has_no_part_in_a_median():
     runs = study()
-    raw, popf = fields(Told.by(runs, "rms_x"), sorted_into(runs, Layout(N, M, KIND, ())))
+    raw, popf = fields(MeasureValues.by(runs, "rms_x"), sorted_into(runs, Layout(N, M, KIND, ())))
     assert raw.centre[1, 0] == pytest.approx(1.0)  # mm, of seed 1 alone
     assert popf.centre[1, 0] == pytest.approx(2.5)
 

@@ -34,7 +34,7 @@ class Glance(Struct, frozen=True):
     """What the robot does: `waits` for its first command, `drives`, has `stopped` by itself."""
 
 
-Told = Callable[[int, Glance | None], None]
+OnTick = Callable[[int, Glance | None], None]
 """Told now and then which tick is over, and how the run is where it goes by the clock."""
 
 

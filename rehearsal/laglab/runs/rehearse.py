@@ -13,7 +13,7 @@ from laglab.live import fed
 from laglab.runs.clock import LoopClock
 from laglab.runs.ending import Ending
 from laglab.runs.errors import CUT_SHORT, SIDE_ERRORS
-from laglab.runs.glance import Told, watched
+from laglab.runs.glance import OnTick, watched
 from laglab.runs.inline import InlineLink
 from laglab.runs.pauses import short_pauses
 from laglab.runs.processes.child import LOOK_UP, Child, Inbox, Letter, started
@@ -51,7 +51,7 @@ def unheard(_: object, __: object) -> None:
 def rehearse_inline(
     scenario: Scenario,
     recorder: Recorder,
-    progress: Told = unheard,
+    progress: OnTick = unheard,
     setup: Setup | None = None,
     controller: MakeController = Controller,
 ) -> Ending:
@@ -91,7 +91,7 @@ def rehearse_apart(
     scenario: Scenario,
     transport: Transport,
     directory: Path,
-    progress: Told = unheard,
+    progress: OnTick = unheard,
     setup: Setup | None = None,
 ) -> Ending:
     """Each side in a process of its own; the robot's leaves its record in `directory`.
@@ -133,7 +133,7 @@ class _Rehearsal:
         inbox: Inbox,
         scenario: Scenario,
         key: str | None,
-        progress: Told,
+        progress: OnTick,
     ) -> None:
         self._gateway = gateway
         self._inbox = inbox

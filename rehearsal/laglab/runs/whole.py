@@ -4,7 +4,7 @@ from contextlib import closing
 from pathlib import Path
 
 from laglab.runs.ending import Ending
-from laglab.runs.glance import Told
+from laglab.runs.glance import OnTick
 from laglab.runs.rehearse import Transport, rehearse_apart, rehearse_inline
 from laglab.runs.robot_side import Setup
 from laglab.scenario import Scenario
@@ -15,7 +15,7 @@ def run_into(
     directory: Path,
     scenario: Scenario,
     transport: Transport,
-    told: Told,
+    told: OnTick,
     setup: Setup | None = None,
 ) -> Ending:
     """Both sides to the end; `told` of the ticks. What breaks is in the ending."""
@@ -29,7 +29,7 @@ def _ending(
     directory: Path,
     scenario: Scenario,
     transport: Transport,
-    told: Told,
+    told: OnTick,
     setup: Setup | None,
 ) -> Ending:
     if transport != "inline":

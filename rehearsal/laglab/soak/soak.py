@@ -21,7 +21,7 @@ from laglab.version import laglab_version
 TURN_FILE = "turn.json"
 JSON_FILE, MARKDOWN_FILE = "soak.json", "soak.md"
 
-Told = Callable[[list[str]], None]
+OnFailure = Callable[[list[str]], None]
 
 
 @dataclass
@@ -31,7 +31,7 @@ class Soak:
     command: str
     seed: int
     folder: Path
-    told: Told
+    told: OnFailure
     tally: Tally = field(default_factory=Tally)
     began: datetime = field(default_factory=lambda: datetime.now(UTC))
     machine: Machine = field(default_factory=this_machine)

@@ -33,7 +33,7 @@ INSIDE = {
 """What a page may load: nothing that is not in it."""
 
 
-class Told(Struct, frozen=True):
+class ScriptSettings(Struct, frozen=True):
     """What the page's script is told of a run."""
 
     sample_time: float
@@ -125,7 +125,7 @@ def _plots(panel: Panel, number: int, axes: Axes, plane: Plane, high: int) -> Pl
 
 def _settings(panels: Sequence[Panel]) -> Markup:
     told = [
-        Told(
+        ScriptSettings(
             panel.scenario.sample_time,
             panel.scenario.link.n,
             panel.scenario.plant.track,

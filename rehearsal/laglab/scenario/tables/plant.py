@@ -19,7 +19,7 @@ from laglab_gateway.values import (
     saying,
 )
 
-Share = Annotated[Number, Field(gt=-1, lt=1)]
+Fraction = Annotated[Number, Field(gt=-1, lt=1)]
 SHIPPED = {
     "robot": "differential drive, told its wheels' speeds: the paper's robot",
     "car": "car-like: drives with its rear wheels, steers with its front ones, which lag",
@@ -186,9 +186,9 @@ class PlantTable(Table):
         NotNegative, described("s", "First-order lag of the wheels' speeds; 0: none.")
     ] = 0.0
     wheel_radius_error: Annotated[
-        Share, described("1", "The true wheel radius over `wheel_radius`, less 1.")
+        Fraction, described("1", "The true wheel radius over `wheel_radius`, less 1.")
     ] = 0.0
-    track_error: Annotated[Share, described("1", "The true track over `track`, less 1.")] = 0.0
+    track_error: Annotated[Fraction, described("1", "The true track over `track`, less 1.")] = 0.0
     wheel_slip: Annotated[
         Number,
         Field(ge=0, lt=1),

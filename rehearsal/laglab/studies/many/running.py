@@ -43,7 +43,7 @@ class Ticks(NamedTuple):
     """(ticks, robots): that run is over, and what is here does not count."""
 
 
-Told = Callable[[Ticks], object]
+OnTicks = Callable[[Ticks], object]
 
 
 class Ends(NamedTuple):
@@ -56,7 +56,7 @@ class Ends(NamedTuple):
     """Something happened that a batch cannot express; run them one by one."""
 
 
-def run_many(scenarios: Sequence[Scenario], told: Told) -> Ends:
+def run_many(scenarios: Sequence[Scenario], told: OnTicks) -> Ends:
     """All of them to the end. There must be no reason to run them one by one (`why_one_by_one`)."""
     from laglab_fmu import Fleet  # loads FMPy
 
@@ -118,7 +118,9 @@ class Answers(NamedTuple):
     """The robots whose guard would have acted by now."""
 
 
-def _run(fleet: Fleet, scenario: Scenario, answer: Callable[[Pose], Answers], told: Told) -> Ends:
+def _run(
+    fleet: Fleet, scenario: Scenario, answer: Callable[[Pose], Answers], told: OnTicks
+) -> Ends:
     """`answer` is given what is sampled at each tick."""
     wheels, last, robots = Wheels(scenario), scenario.must_end(), len(fleet.readings)
     page = Page(robots)

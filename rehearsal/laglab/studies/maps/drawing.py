@@ -10,7 +10,7 @@ from laglab.studies.maps.grid import Sorted, fields, sorted_into
 from laglab.studies.maps.heat import Map, draw_maps
 from laglab.studies.maps.lines import draw_lines
 from laglab.studies.maps.margin import Plane, moves_it, plane
-from laglab.studies.maps.measures import Told
+from laglab.studies.maps.measures import MeasureValues
 from laglab.studies.maps.runs import Layout, StudyRuns, layout
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ def draw_study(
     Raises: StudyError, when there is no such key or column, or nothing to draw along.
     """
     chosen = layout(runs, x, y)
-    told = [Told.by(runs, column) for column in values] or telling(runs)
+    told = [MeasureValues.by(runs, column) for column in values] or telling(runs)
     into = sorted_into(runs, chosen)
     maps = [Map(each.of, fields(each, into)) for each in told]
     if chosen.y is None:
@@ -44,9 +44,9 @@ def draw_study(
     return figure
 
 
-def telling(runs: StudyRuns) -> list[Told]:
+def telling(runs: StudyRuns) -> list[MeasureValues]:
     """What is drawn when nothing else is asked for."""
-    told = (Told.by(runs, column) for column in MEASURES)
+    told = (MeasureValues.by(runs, column) for column in MEASURES)
     return [each for each in told if each.of.column == ALWAYS or each.says_something]
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.studies.maps.measures import Summed, Told
+from laglab.studies.maps.measures import MeasureValues, Summed
 from laglab.studies.maps.runs import Layout, StudyRuns
 
 Array = NDArray[np.float64]
@@ -51,7 +51,7 @@ def sorted_into(runs: StudyRuns, by: Layout) -> Sorted:
     return Sorted(values[2], values[1], values[0], cells)
 
 
-def fields(told: Told, into: Sorted) -> list[Field]:
+def fields(told: MeasureValues, into: Sorted) -> list[Field]:
     """Of one measure, a panel each."""
     return [
         _field([[told.summed(chosen) for chosen in row] for row in rows]) for rows in into.cells

@@ -93,7 +93,7 @@ class Summed(NamedTuple):
     estimate: Estimate
 
 
-class Told(NamedTuple):
+class MeasureValues(NamedTuple):
     """A measure of every run."""
 
     of: Measure
@@ -101,7 +101,7 @@ class Told(NamedTuple):
     diverged: NDArray[np.bool_]
 
     @classmethod
-    def by(cls, runs: StudyRuns, column: str) -> Told:
+    def by(cls, runs: StudyRuns, column: str) -> MeasureValues:
         """That of a column; `diverged` needs none. Raises: StudyError, when there is none, or it
         has no numbers."""
         of, diverged = measure(column), runs.diverged
