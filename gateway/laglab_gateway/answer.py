@@ -1,6 +1,7 @@
 """The station's answer to a tick, put together from its messages."""
 
 from collections import deque
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from laglab_protocol import UNANNOUNCED, Command, Estimate, Plan, Recall, frames_of
@@ -21,13 +22,15 @@ class Answer:
         """The tick of the last command that was taken."""
         self.command: Command | None = None
         self.estimates: deque[Estimate] = deque(maxlen=UNANNOUNCED)
-        self._beside: deque[Recall | Plan] = deque(maxlen=UNANNOUNCED)
+        self._beside = _kept()
 
     def begin(self) -> None:
-        """Nothing was said yet at this tick."""
+        """Nothing was said yet at this tick, but of a plan whose command is still on its way: on a
+        slow line they come one after the other."""
         self.command = None
         self.estimates.clear()
-        self._beside.clear()
+        if self._beside:
+            self._beside = _kept(each for each in self._beside if isinstance(each, Plan))
 
     def take(self, message: Estimate | Recall | Plan | Command, tick: int) -> Said | None:
         """What goes on the link at `tick` now that `message` has come: a whole command for this
@@ -51,12 +54,17 @@ class Answer:
 
     def _is_whole(self, command: Command) -> bool:
         """Whether all that was said before `command` is here."""
-        plans = sum(isinstance(each, Plan) for each in self._beside)
-        said = len(self.estimates) + len(self._beside) - plans
-        return said >= command.estimates and plans >= frames_of(command)
+        plans = [each for each in self._beside if isinstance(each, Plan)]
+        said = len(self.estimates) + len(self._beside) - len(plans)
+        its_own = sum(plan.tick == command.tick for plan in plans)
+        return said >= command.estimates and its_own >= frames_of(command)
 
     def _said(self, command: Command) -> Said:
         self.through = command.tick
         said = Said(command, list(self._beside))
         self._beside.clear()
         return said
+
+
+def _kept(some: Iterable[Recall | Plan] = ()) -> deque[Recall | Plan]:
+    return deque(some, maxlen=UNANNOUNCED)

@@ -198,3 +198,14 @@ def test_an_answer_of_which_a_frame_was_lost_before_the_link_waits_for_the_repea
         assert not rig.gateway.answered
     rig.gateway.hear(frames_in(b"".join(map(rig.sender.frame, [*frames, command]))))
     assert rig.gateway.answered
+
+
+@pytest.mark.parametrize("between", [0, 1, 2])
+def test_a_plan_on_a_slow_line_may_cross_the_border_of_a_tick(between: int) -> None:
+    """What there is of an answer when a tick ends belongs to the rest, which comes in the next."""
+    rig, answer = Rig(), said(plan_of(0, 30))
+    rig.tick(*answer[:between])
+    rig.tick(*answer[between:])
+    got = [rig.tick().v for _ in range(8)]
+    assert got[-1] == plan_of(0, 30).following[9 - N - 1][0]
+    assert rig.gateway.audit.report().refused == {}

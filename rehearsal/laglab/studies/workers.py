@@ -5,7 +5,7 @@ import pickle
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from queue import Empty, Queue
 from typing import Any, Protocol, Self, TypeVar
 
@@ -89,8 +89,15 @@ class Processes:
         asked = self._next()
         while asked:
             inbox: Inbox = Queue()
-            with started(name, f"{__name__}:work", asked.call, inbox, again=True) as child:
-                asked = self._follow(child, inbox, asked)
+            with ExitStack() as stack:
+                worker = started(name, f"{__name__}:work", asked.call, inbox, again=True)
+                try:
+                    child = stack.enter_context(worker)
+                except OSError as error:
+                    asked.future.set_exception(RunError(f"no worker can be started: {error}"))
+                    asked = self._next()
+                else:
+                    asked = self._follow(child, inbox, asked)
 
     def _next(self) -> _Asked | None:
         while not self._over.is_set():

@@ -113,15 +113,18 @@ def _read(child: Child, inbox: Inbox) -> None:
     assert child.process.stdout is not None
     with child.process.stdout as lines:
         for line in lines:
-            inbox.put(Letter(child, _decode(line)))
+            if line.endswith(b"\n"):  # or it died in the middle of it
+                inbox.put(Letter(child, _decode(line)))
     how = _how_it_ended(child.process.wait())
     inbox.put(Letter(child, Ended(f"the {child.name} process {how}")))
 
 
 def _how_it_ended(exit_code: int) -> str:
-    if exit_code < 0:
+    if exit_code >= 0:
+        return f"ended with exit code {exit_code} and no word"
+    with suppress(ValueError):
         return f"was killed by {signal.Signals(-exit_code).name}"
-    return f"ended with exit code {exit_code} and no word"
+    return f"was killed by signal {-exit_code}"
 
 
 def main(target: str, again: bool) -> None:
