@@ -3,8 +3,8 @@
 import inspect
 import sys
 from collections.abc import Iterator
-from contextlib import suppress
 from importlib import import_module
+from importlib.machinery import ModuleSpec
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from pathlib import Path
@@ -86,12 +86,21 @@ def source_of(group: Group, name: str) -> Path | None:
         else [entry.value for entry in entry_points(group=group) if entry.name == name]
     )
     for value in values:
-        _look_here()
-        with suppress(ImportError, ValueError):
-            found = find_spec(value.partition(":")[0])
-            if found and found.origin and Path(found.origin).is_file():
-                return Path(found.origin)
+        found = _spec_of(value.partition(":")[0])
+        if found and found.origin and Path(found.origin).is_file():
+            return Path(found.origin)
     return None
+
+
+def _spec_of(module: str) -> ModuleSpec | None:
+    """None where the package around it cannot be loaded, either: who loads it is told why."""
+    _look_here()
+    try:
+        return find_spec(module)
+    except KeyboardInterrupt:
+        raise
+    except BaseException:  # it is a stranger's
+        return None
 
 
 def made(name: str, maker: Maker, *told: object, **options: object) -> object:

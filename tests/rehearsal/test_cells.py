@@ -1,6 +1,7 @@
 """A study's cells, and what is judged of their runs."""
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import msgspec
@@ -9,12 +10,14 @@ import pytest
 
 import laglab
 from laglab.results.nees import nees
-from laglab.scenario import Target
+from laglab.scenario import Target, load
 from laglab.studies.judged import Judge, Stretch, judgements
 from laglab.studies.sweep.cells.cell import Cell
 from laglab.studies.sweep.cells.compute import computed
 from laglab.studies.sweep.cells.ways import how
-from laglab.studies.sweep.loading import load_study
+from laglab.studies.sweep.loading import load_study, to_toml
+from laglab.studies.sweep.study import Study
+from laglab_control.plugins import source_of
 
 HERE = (0.0, 0.0, 0.0)
 SHORT = """
@@ -96,6 +99,36 @@ def test_another_description_or_other_code_is_another_key(cells: list[Cell]) -> 
     keys = {cells[0].key, cells[1].key}
     keys |= {msgspec.structs.replace(cells[0], **{k: v}).key for k, v in changes.items()}
     assert len(keys) == 6
+
+
+@pytest.mark.parametrize("seeds", [range(1, 4), range(3), range(5, 10), range(2, 10, 2), (7, 3)])
+def test_a_study_is_read_back_with_the_same_cells(seeds: Sequence[int], tmp_path: Path) -> None:
+    study = Study(load("lab"), seeds, {"link.command.loss": [0.0, 0.1]})
+    (tmp_path / "study.toml").write_text(to_toml(study, study.origin))
+    again = load_study(str(tmp_path / "study.toml"))
+    assert [each.key for each in again.cells()] == [each.key for each in study.cells()]
+
+
+@pytest.mark.parametrize("key", ["estimator.kind", "law.kind", "plant.kind"])
+def test_what_somebody_brings_is_part_of_the_code(
+    key: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(tmp_path))
+    module = tmp_path / f"brought_{key.replace('.', '_')}.py"
+    origins = set()
+    for text in ("class It: ...", "class It: ...", "class It:  # it is another now"):
+        module.write_text(text)
+        origins.add(Study(load("lab", {key: f"{module.stem}:It"}), (1,)).origin)
+    assert len(origins) == 2
+
+
+def test_a_package_that_fails_as_it_is_loaded_has_no_source(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(tmp_path))
+    (tmp_path / "failing_package").mkdir()
+    (tmp_path / "failing_package" / "__init__.py").write_text("raise SystemExit(3)")
+    assert source_of("laglab.laws", "failing_package.laws:It") is None
 
 
 def test_nees_is_that_of_the_textbook() -> None:

@@ -131,7 +131,7 @@ def _anchored(key: str, values: list[object], folder: Path) -> list[object]:
 
 
 def to_toml(study: Study, origin: str) -> str:
-    """What `study_of` reads back to an equal one."""
+    """What `study_of` reads back to one with the same cells."""
     return tomlkit.dumps(plain({"origin": origin, **study.as_table()}))
 
 

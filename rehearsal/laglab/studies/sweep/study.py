@@ -100,6 +100,7 @@ class Study:
         chosen: tuple[tuple[Group, str, str], ...] = (
             ("laglab.estimators", "estimator.kind", self.scenario.estimator.kind),
             ("laglab.laws", "law.kind", self.scenario.law.kind),
+            ("laglab.plants", "plant.kind", self.scenario.plant.kind),
         )
         for group, key, own in chosen:
             for name in {own, *map(str, self.grid.get(key, ()))}:
@@ -119,8 +120,8 @@ class Study:
 
     @property
     def _told_seeds(self) -> int | list[int]:
-        counted = isinstance(self.seeds, range)
-        return len(self.seeds) if counted else list(self.seeds)
+        number = len(self.seeds)
+        return number if self.seeds == range(1, number + 1) else list(self.seeds)
 
 
 def _axis(key: str, values: Sequence[object]) -> tuple[object, ...]:
