@@ -32,7 +32,7 @@ def read_tlog(path: Path) -> Iterator[tuple[int, Frame]]:
 def _records(file: BinaryIO, name: str) -> Iterator[tuple[int, Frame]]:
     buffer, before, position = b"", 0, 0
     while True:
-        found = decode(buffer, position + STAMP_SIZE)
+        found = _found(buffer, position + STAMP_SIZE)
         if found is Refusal.INCOMPLETE:
             more = file.read(PIECE)
             if not more:
@@ -42,8 +42,18 @@ def _records(file: BinaryIO, name: str) -> Iterator[tuple[int, Frame]]:
         if isinstance(found, Frame):
             yield int.from_bytes(buffer[position : position + STAMP_SIZE], "big"), found
             position += STAMP_SIZE + len(found.raw)
-        elif found is Refusal.UNKNOWN and buffer[position + STAMP_SIZE] == START:
+        elif found is Refusal.UNKNOWN:
             position = extent(buffer, position + STAMP_SIZE)
         else:
             at = before + position + STAMP_SIZE
             raise TlogError(f"{name}: no frame of the dialect at byte {at}")
+
+
+def _found(buffer: bytes, start: int) -> Frame | Refusal:
+    """UNKNOWN only of a frame that is there to its end."""
+    found = decode(buffer, start)
+    if found is not Refusal.UNKNOWN:
+        return found
+    if buffer[start] != START:
+        return Refusal.BAD_CRC
+    return found if extent(buffer, start) <= len(buffer) else Refusal.INCOMPLETE

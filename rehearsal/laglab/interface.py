@@ -41,7 +41,7 @@ def run(
             memory.
         progress: show it on standard error.
         force: take the folder's other run away.
-        controller: what computes the station's answers, for a run in memory.
+        controller: what computes the station's answers, where that is in this process.
 
     Raises:
         ScenarioError: there is no such scenario or transport, or it cannot be.
@@ -51,6 +51,8 @@ def run(
     """
     if transport not in get_args(Transport):
         raise ScenarioError(f"transport: take one of {', '.join(get_args(Transport))}")
+    if controller is not Controller and transport != "inline":
+        raise ScenarioError(f"controller: {transport} has the station in a process of its own")
     chosen = _chosen(scenario, overrides)
     if out is None:
         chosen.must_end()  # memory has no room for what does not end
@@ -65,7 +67,7 @@ def run(
             directory = place(chosen, Path(out), force)
         else:
             directory = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="laglab-")))
-        ending = run_into(directory, chosen, transport, told)
+        ending = run_into(directory, chosen, transport, told, controller=controller)
         done = complete(chosen, way, ending, directory, figure=out is not None)
         return _whole(ending, done if out is not None else _in_memory(done))
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from laglab_protocol import Command, Sender, Tick, TlogError, read_tlog, tlog_record
+from laglab_protocol.tlog import PIECE
 
 T0 = 1_700_000_000_000_000
 
@@ -42,6 +43,22 @@ def test_what_is_no_log_is_refused(tmp_path: Path) -> None:
 
     with pytest.raises(TlogError, match="byte 8"):
         list(read_tlog(other))
+
+
+@pytest.mark.parametrize("ahead", [*range(0, 240, 20), 300])
+def test_what_the_dialect_does_not_have_is_left_out_wherever_it_stands(
+    log: Path, ahead: int
+) -> None:
+    """On the border of what is read at once, too, and cut short at the end."""
+    unknown = tlog_record(T0, b"\xfd" + bytes([220, 0, 0, 0, 1, 1]) + b"\x33\x33\x33" + bytes(222))
+    record = tlog_record(T0, Sender(1, 1).frame(Tick(1, 0)))
+    before, rest = divmod(PIECE - ahead, len(record))
+    filling = tlog_record(T0, b"\xfd" + bytes([rest, 0, 0, 0, 1, 1, 51, 51, 51]) + bytes(rest + 2))
+    log.write_bytes(record * (before - 1) + filling + unknown + log.read_bytes() + unknown[:-9])
+    assert [frame.message for _, frame in read_tlog(log)][before - 1 :] == [
+        Tick(7, 0),
+        Command(0.25, -1.5, 7, 1, 1, 0),
+    ]
 
 
 def test_mavlogdump_reads_it(log: Path) -> None:

@@ -4,7 +4,7 @@ import pytest
 from msgspec.structs import astuple
 
 from laglab.scenario import load
-from laglab.studies.errata import VARIANTS, costs
+from laglab.studies.errata import VARIANTS, cost, costs
 from laglab_control import Erratum
 
 
@@ -23,6 +23,15 @@ def test_what_each_misprint_costs():
     assert innovation.errors.x > 0.1
     assert innovation.noisy_errors.x > 10 * corrected.noisy_errors.x
     assert not by_errata[frozenset(Erratum)].converged
+
+
+def test_it_is_popf_whatever_the_scenario_s_filter_is():
+    variant = VARIANTS[-1]
+    popf, raw = (
+        cost(load("fig8", {"duration": 2.0, "estimator.kind": kind}), variant, seeds=1)
+        for kind in ("popf", "raw")
+    )
+    assert raw == popf
 
 
 def test_the_command_prints_a_line_for_each(laglab):

@@ -5,8 +5,9 @@ import socket
 
 import pytest
 
+from laglab.live import feed
 from laglab.live.feed import Controls, Feed
-from laglab.live.messages import Line, Rows, unpacked
+from laglab.live.messages import Given, Line, Rows, packed, unpacked
 from laglab.live.server import _unless_crowded
 
 
@@ -17,16 +18,35 @@ def test_a_fast_station_s_frames_all_have_room() -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as page:
         page.bind(("127.0.0.1", 0))
         page.settimeout(5.0)
-        feed = Feed(Line(page.getsockname()[1], "secret"), Controls(lambda: None, lambda: False))
-        feed.said(frames)
-        feed.flush()
+        loop = Feed(Line(page.getsockname()[1], "secret"), Controls(lambda: None, lambda: False))
+        loop.said(frames)
+        loop.flush()
         came: list[bytes] = []
         while len(came) < len(frames):
             rows = unpacked(page.recv(1 << 16), "secret")
             assert isinstance(rows, Rows)
             came += rows.frames
-        feed.close()
+        loop.close()
     assert came == frames
+
+
+def test_a_run_that_is_ended_from_the_page_is_ended_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The page says so until the loop is gone, which has to take its leave of its station."""
+    monkeypatch.setattr(feed, "PERIOD", 0.0)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as page:
+        page.bind(("127.0.0.1", 0))
+        page.settimeout(5.0)
+        loop = Feed(Line(page.getsockname()[1], "secret"), Controls(lambda: None, lambda: False))
+        ended = 0
+        for _ in range(5):
+            try:
+                loop.flush()
+            except KeyboardInterrupt:
+                ended += 1
+            _, there = page.recvfrom(1 << 16)
+            page.sendto(packed(Given("end"), "secret"), there)
+        loop.close()
+    assert ended == 1
 
 
 def test_a_crowd_at_the_door_is_not_told_to_the_terminal(

@@ -15,6 +15,8 @@ import numpy as np
 import pytest
 
 import laglab
+from laglab.errors import ScenarioError
+from laglab_control import Controller, StationConfig
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGES = [(DOCS / name).read_text(encoding="utf-8") for name in ("python.md", "studies.md")]
@@ -164,3 +166,18 @@ def test_ctrl_c_leaves_nothing_running(tmp_path: Path, transport: str) -> None:
 def test_a_transport_that_is_none_is_refused() -> None:
     with pytest.raises(laglab.ScenarioError, match="take one of inline, udp, serial"):
         laglab.run("fig6", transport="telepathy")  # type: ignore[arg-type]
+
+
+def test_another_controller_is_called_wherever_the_results_go(tmp_path: Path) -> None:
+    made = []
+
+    def make(config: StationConfig) -> Controller:
+        made.append(config)
+        return Controller(config)
+
+    short = {"duration": 0.1}
+    laglab.run("fig6", short, controller=make)
+    laglab.run("fig6", short, out=tmp_path / "run", controller=make)
+    assert len(made) == 2
+    with pytest.raises(ScenarioError, match="controller: udp has the station in a process"):
+        laglab.run("fig6", short, transport="udp", controller=make)

@@ -46,6 +46,7 @@ class Feed(Recorder):
         self._controls = controls
         self._rows = Rows()
         self._told = 0.0
+        self._ended = False
 
     def row(self, row: TraceRow) -> None:
         self._rows.trace.append(row)
@@ -72,7 +73,7 @@ class Feed(Recorder):
 
     def flush(self) -> None:
         """Tell, if it is time to. Raises KeyboardInterrupt when somebody at the page ends the run:
-        that is what it amounts to."""
+        that is what it amounts to. But once: it is said until we are gone, which may take time."""
         now = monotonic()
         if now - self._told < PERIOD:
             return
@@ -81,7 +82,8 @@ class Feed(Recorder):
         match self._caller.heard():
             case "stop" if not self._controls.stopped():
                 self._controls.stop()
-            case "end":
+            case "end" if not self._ended:
+                self._ended = True
                 raise KeyboardInterrupt
 
     def close(self) -> None:
