@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from laglab_control.estimators.interface import Estimator, Measured
-from laglab_control.estimators.kalman import Innovation, gain
+from laglab_control.estimators.kalman import normalised_squared
 from laglab_control.model import Matrix, Vector
 
 
@@ -47,16 +47,9 @@ def replay(
                 break
             answer.estimates[k] = state.x
             answer.covariances[k] = np.nan if state.P is None else state.P
-            answer.nis[k] = _squared(estimator.innovation(state)) if measurements else np.nan
+            innovation = estimator.innovation(state) if measurements else None
+            answer.nis[k] = normalised_squared(innovation) if innovation else np.nan
     return answer
-
-
-def _squared(innovation: Innovation | None) -> float:
-    """v^T S^-1 v."""
-    if innovation is None:
-        return np.nan
-    value, S = innovation
-    return float((gain(value[np.newaxis], S) @ value)[0])
 
 
 def constant_delay(measurements: Vector, m: int) -> list[list[Measured]]:

@@ -17,6 +17,7 @@ from laglab_protocol import (
     Measurement,
     Plan,
     Planned,
+    Restart,
     Tick,
     read_tlog,
 )
@@ -51,11 +52,12 @@ def read_session(path: Path) -> Iterator[SessionTick]:
 
 def heard(frames: Iterable[Frame]) -> Iterator[SessionTick]:
     """The ticks in the frames of both directions; passed over are repeats, what is not whole,
-    and what others than the robot and its station said."""
+    and what others than the robot and its station said. They go up, but where a robot has begun
+    again."""
     arriving: list[Measurement] = []
     recalled: list[Applied] = []
     last: SessionTick | None = None
-    plans = Assembly()
+    plans, restart = Assembly(), Restart()
     for frame in frames:
         match (frame.system, frame.component), frame.message:
             case speaker, Measurement() as measurement if speaker == ROBOT:
@@ -63,7 +65,7 @@ def heard(frames: Iterable[Frame]) -> Iterator[SessionTick]:
             case speaker, Applied() as told if speaker == ROBOT:
                 recalled.append(told)
             case speaker, Tick(tick, count) if speaker == ROBOT:
-                if len(arriving) + len(recalled) == count and (last is None or tick > last.tick):
+                if len(arriving) + len(recalled) == count and _is_next(tick, last, restart):
                     if last is not None:
                         yield last
                     last = SessionTick(tick, tuple(arriving), None, recalled=tuple(recalled))
@@ -76,6 +78,11 @@ def heard(frames: Iterable[Frame]) -> Iterator[SessionTick]:
                 last = _planned(last, plans.take(part))
     if last is not None:
         yield last
+
+
+def _is_next(tick: int, last: SessionTick | None, restart: Restart) -> bool:
+    """As the station decides."""
+    return last is None or restart.shows(tick, last.tick) or tick > last.tick
 
 
 def _planned(last: SessionTick, whole: Planned | None) -> SessionTick:

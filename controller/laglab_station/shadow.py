@@ -32,13 +32,15 @@ def shadow(
     Measurements are played out as by the station. Raises PluginFailedError, naming the tick, when
     an estimator that somebody brought fails. The law of `config` is not asked. Over ticks that are
     missing, the last command held, or its plan went on. It ends early when the estimate has become
-    infinite.
+    infinite, or the robot has begun again: it may be anywhere.
     """
     controller = Controller(config)
     control = controller.start()
     first = last = None
     for heard in _played_out(session, playout):
         first, last = (heard.tick, heard.tick) if first is None or last is None else (first, last)
+        if heard.tick < last:
+            return
         with at_tick(heard.tick):
             for lost in range(heard.tick - last):
                 control = controller.unanswered(control) if lost else control

@@ -162,6 +162,8 @@ class Relay(RobotSide):
         self._commands.first = self.first
         self._measurements.clear()
         self._asks.clear()
+        self.audit.command.begin_anew()
+        self.audit.measurement.begin_anew()
         self._memory.forget()
         self._owed.forget()
         self._drive = Drive()

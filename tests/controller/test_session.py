@@ -35,6 +35,23 @@ def test_repeats_and_what_is_not_whole_are_passed_over():
     assert list(told) == [SessionTick(0, (z(0),), u(0))]
 
 
+def test_a_robot_that_begins_again_goes_on_in_the_session():
+    """From where the station meets it; an old tick that only comes late is none of it."""
+    first = [message for k in range(50) for message in (z(k), Tick(k, 1), u(k))]
+    late = [z(30), Tick(30, 1)]
+    again = [message for k in range(25) for message in (z(k), Tick(k, 1), u(k))]
+    told = list(heard(frames(*first, *late, *again)))
+    assert [each.tick for each in told] == [*range(50), *range(19, 25)]
+    assert all(each.measurements == (z(each.tick),) for each in told)
+    lockstep = [*first, *[z(0), Tick(0, 1)] * 4, u(0), z(1), Tick(1, 1)]
+    assert [each.tick for each in heard(frames(*lockstep))] == [*range(50), 0, 1]
+
+
+def test_a_shadow_ends_where_the_robot_begins_again():
+    session = [SessionTick(k, (), u(k)) for k in (*range(5), *range(9))]
+    assert [row.tick for row in shadow(StationConfig(), session)] == list(range(5))
+
+
 def test_nothing_at_all():
     assert list(heard([])) == []
     assert list(shadow(StationConfig(), [])) == []

@@ -13,9 +13,12 @@ from matplotlib.quiver import Quiver
 
 import laglab
 from laglab.results.figures import INCHES, Width, draw_runs, legend, printed, sheet
+from laglab.results.figures.strip import CAUSES
 from laglab.results.link_view import link_view
 from laglab.scenario import load
 from laglab.scenario.differences import differing
+from laglab_gateway.drive import Rejection
+from laglab_gateway.link.fates import FateKind
 
 WIDTHS: tuple[Width, ...] = ("one", "two")
 PUSHED = {"plant.event": [{"at": 3.0, "by": [0.5, 0.0, 0.0]}], "duration": 4.0}
@@ -265,3 +268,9 @@ def test_figure_draws_again_in_the_format_of_the_name(
     begins = {"png": b"\x89PNG", "pdf": b"%PDF", "svg": b"<?xml"}
     assert out.read_bytes().startswith(begins[ending])
     assert (tmp_path / "run" / "trace.csv").read_bytes() == trace
+
+
+def test_every_way_to_be_lost_has_a_mark_of_its_own() -> None:
+    ways = {each.value for each in (*FateKind, *Rejection)} - {FateKind.DELIVERED}
+    assert set(CAUSES) == ways
+    assert len(set(CAUSES.values())) == len(ways)

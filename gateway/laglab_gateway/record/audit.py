@@ -76,6 +76,10 @@ class DirectionAudit:
         self.reordered += stamp < self.newest
         self.newest = max(self.newest, stamp)
 
+    def begin_anew(self) -> None:
+        """The stamps begin again."""
+        self.newest = -1
+
     def report(self) -> DirectionReport:
         """As it is now."""
         lost = {kind.value: n for kind, n in self.fates.items() if kind != FateKind.DELIVERED}

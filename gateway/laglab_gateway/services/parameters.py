@@ -29,21 +29,20 @@ BY_NAME = -1
 
 @dataclass(frozen=True)
 class Parameter:
-    """One number. Settable ones stay within their limits, whole ones without a fraction."""
+    """One number. Settable ones stay within their limits."""
 
     name: str
     value: float
     settable: bool = False
     minimum: float = -math.inf
     maximum: float = math.inf
-    whole: bool = False
 
     def refuses(self, value: float) -> int | None:
         """Why `value` may not be set, as a MAV_PARAM_ERROR; None when it may."""
         if not self.settable:
             return int(mavlink.MAV_PARAM_ERROR_READ_ONLY)
         fits = math.isfinite(value) and self.minimum <= value <= self.maximum
-        if not fits or (self.whole and value != int(value)):
+        if not fits:
             return int(mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE)
         return None
 

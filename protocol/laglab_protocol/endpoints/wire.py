@@ -14,14 +14,13 @@ ROUNDING = 1e-6
 
 
 class Wire:
-    """Takes at most `capacity` bytes at a time and gives them back in order, at the line's rate.
+    """Takes TRANSMIT_BUFFER bytes at a time and gives them back in order, at the line's rate.
 
     All times are in seconds of the caller's clock, which must not go back.
     """
 
-    def __init__(self, baud: int, capacity: int = TRANSMIT_BUFFER) -> None:
+    def __init__(self, baud: int) -> None:
         self._bytes_per_second = baud / BITS_PER_BYTE
-        self._capacity = capacity
         self._waiting = bytearray()
         self._busy_until = 0.0
         """When the last byte that was taken had crossed: the next one starts no earlier."""
@@ -29,7 +28,7 @@ class Wire:
     @property
     def room(self) -> int:
         """Bytes that `put` takes now."""
-        return self._capacity - len(self._waiting)
+        return TRANSMIT_BUFFER - len(self._waiting)
 
     def put(self, data: bytes, now: float) -> None:
         """Start sending; at most `room` bytes."""

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab.errors import NoRunError
-from laglab.results.columns import Columns, places
+from laglab.results.columns import Columns, places, rising
 from laglab.results.meaning import ARRIVALS, CLAIMS, LINK, SHADOW, TIMING, Column, tick_columns
 from laglab.results.run import Run
 from laglab_gateway import ARRIVALS_FILE, CLAIMS_FILE, LINK_FILE, TIMING_FILE, Trace
@@ -81,7 +81,7 @@ def _ticks(run: Run) -> Iterator[Trace]:
 
 
 class _Beside:
-    """Another table's rows, laid beside those with the same `key`, which goes up in both.
+    """Another table's rows, laid beside those with the same `key`, as far as it goes up.
 
     A real robot that begins again counts its ticks anew: only the time goes up then.
     """
@@ -96,13 +96,14 @@ class _Beside:
 
     def of(self, keys: Keys) -> Trace:
         """The columns for these rows; NaN where the table has none for them."""
-        self._read_up_to(keys[-1])
+        last = keys[rising(keys) - 1]
+        self._read_up_to(last)
         columns = {name: np.full(len(keys), np.nan) for name in self._renamed.values()}
         for piece in self._waiting:
             there, rows = places(keys, piece[self.key])
             for name, renamed in self._renamed.items():
                 columns[renamed][rows] = piece[name][there]
-        self._waiting = [each for each in self._waiting if each[self.key][-1] > keys[-1]]
+        self._waiting = [each for each in self._waiting if each[self.key][-1] > last]
         return columns
 
     def _read_up_to(self, key: float) -> None:

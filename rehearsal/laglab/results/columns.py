@@ -77,8 +77,15 @@ def thinned(columns: Mapping[str, NDArray[Cell]], every: int) -> dict[str, NDArr
     return {name: column[::every].copy() for name, column in columns.items()}
 
 
+def rising(keys: Array) -> int:
+    """How many of them go up, from the first on: a real robot that begins again counts anew."""
+    falls = np.flatnonzero(np.diff(keys) < 0)
+    return int(falls[0]) + 1 if len(falls) else len(keys)
+
+
 def places(keys: Array, wanted: NDArray[np.generic]) -> tuple[NDArray[np.bool_], NDArray[np.intp]]:
-    """Which of the `wanted` are among the keys, which go up, and in which rows these are."""
+    """Which of the `wanted` are among the keys, as far as these go up, and in which rows."""
+    keys = keys[: rising(keys)]
     rows = np.searchsorted(keys, wanted.astype(float))
     there = rows < len(keys)
     there[there] = keys[rows[there]] == wanted[there]
@@ -87,7 +94,7 @@ def places(keys: Array, wanted: NDArray[np.generic]) -> tuple[NDArray[np.bool_],
 
 def at_ticks(columns: Mapping[str, NDArray[Cell]], ticks: Array) -> dict[str, NDArray[Cell]]:
     """The rows of these ticks."""
-    there, _ = places(ticks, columns["tick"])
+    there = np.isin(columns["tick"].astype(float), ticks)
     return {name: column[there] for name, column in columns.items()}
 
 

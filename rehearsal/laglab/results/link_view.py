@@ -95,8 +95,9 @@ class _Arrivals:
         self._stride = stride
         self._came: dict[str, list[Array]] = {name: [] for name in DIRECTIONS}
         self._refused: dict[str, list[Array]] = {}
-        self.counts = Counter[str]()
         """When commands were refused [s], by reason."""
+        self.counts = Counter[str]()
+        """How many were, by reason."""
         self.stops = dict.fromkeys(stops, np.inf)
         """When the robot stopped, and when it went on."""
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab.files import whole_file
-from laglab.results.columns import Lines, csv_pieces, joined, places
+from laglab.results.columns import Lines, csv_pieces, joined, places, rising
 from laglab.results.numbers import AXES, COVARIANCE, RmsError, deviation
 from laglab.results.summary import Errors
 from laglab.runs.station_side import shadow_config
@@ -107,8 +107,9 @@ def shadow_error(
     done = 0
     for piece in pieces:
         estimates = np.full((len(piece["tick"]), 3), np.nan)
-        while waiting is not None and waiting.tick <= piece["tick"][-1]:
-            estimates[int(np.searchsorted(piece["tick"], waiting.tick))] = waiting.x
+        ticks = piece["tick"][: rising(piece["tick"])]
+        while waiting is not None and waiting.tick <= ticks[-1]:
+            estimates[int(np.searchsorted(ticks, waiting.tick))] = waiting.x
             waiting = next(coming, None)
         rms.add(deviation(piece, estimates)[max(measurement_delay - done, 0) :])
         done += len(estimates)

@@ -5,8 +5,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from laglab.results.columns import places
 from laglab.results.nees import nees_by_triangle
 from laglab.results.numbers import (
+    COVARIANCE,
     RmsError,
     at_goal,
     goal_errors,
@@ -133,17 +135,26 @@ def judgements(record: Stretch, diverged: Array, of: Target, measurement_delay: 
     return judge.judgements(diverged)
 
 
-def judged_run(done: Run, claimed: Array | None = None) -> Judgements:
-    """Of one run, with what its station claimed (ticks, 6)."""
+def judged_run(done: Run) -> Judgements:
+    """Of one run."""
     trace, diverged = done.trace, done.summary.outcome == "diverged"
     record = Stretch(
         robot_pose(trace)[np.newaxis],
         loop_estimates(trace)[np.newaxis],
-        None if claimed is None else claimed[np.newaxis],
+        _claimed(done)[np.newaxis],
         np.stack([trace["v"], trace["omega"]], axis=1)[np.newaxis],
     )
     last = np.array([trace["tick"][-1] if diverged else np.nan])
     return judgements(record, last, done.scenario.target, done.scenario.link.m)
+
+
+def _claimed(done: Run) -> Array:
+    """(ticks, 6), the upper triangle of the covariance; NaN where nothing is claimed."""
+    ticks, claims = done.trace["tick"], done.claims
+    there, rows = places(ticks, claims["tick"])
+    claimed = np.full((len(ticks), len(COVARIANCE)), np.nan)
+    claimed[rows] = np.stack([claims[name][there] for name in COVARIANCE], axis=1)
+    return claimed
 
 
 def joined(parts: list[Judgements]) -> Judgements:

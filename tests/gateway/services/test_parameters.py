@@ -61,7 +61,6 @@ def test_a_safe_parameter_is_set(services: Services) -> None:
         (b"V_MAX", -1.0, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE),
         (b"V_MAX", math.nan, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE),
         (b"V_MAX", math.inf, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE),
-        (b"TRIES", 2.5, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE),
     ],
 )
 def test_a_refused_setting_says_why_and_what_holds(

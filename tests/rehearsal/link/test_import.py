@@ -13,6 +13,7 @@ import pytest
 from laglab.link.errors import LinkFileError
 from laglab.link.importing import How, read_link, read_table, recognise
 from laglab.link.importing.mahimahi import waited
+from laglab.link.importing.tables import LARGEST
 from laglab.link.measured import MeasuredLink, read_measured
 from laglab.link.probing import Sizes
 from laglab.scenario import load
@@ -212,6 +213,8 @@ def test_a_table_of_netems_is_a_distribution(laglab: Laglab, tmp_path: Path) -> 
     assert np.mean(np.isclose(drawn, 0.04)) == pytest.approx(0.5, abs=0.1)
     assert np.mean(np.isclose(drawn, 0.06)) == pytest.approx(0.5, abs=0.1)
     assert read_table(tmp_path / "link.toml", 0.0, 0.0) is None
+    (tmp_path / "large.dist").write_text("-1 0 1 \n" * (LARGEST // 8 + 1))
+    assert read_table(tmp_path / "large.dist", 0.0, 1.0) is None
 
 
 def test_what_was_imported_is_read_again(laglab: Laglab, tmp_path: Path) -> None:

@@ -47,7 +47,7 @@ def consistency(
     """
     require(REHEARSING)
     picture_place(out)
-    names = [checked("--judge", comparable, name) for name in judged or JUDGED]
+    names = [checked("--judge", comparable, name) for name in dict.fromkeys(judged or JUDGED)]
     _check(scenario, seeds)
     runs = samples(scenario, names, seeds, workers)
     got = list(tracked(runs, seeds, "consistency", "seed"))

@@ -13,6 +13,8 @@ SCALE = 8192
 QUANTILES = 65
 MOST = 2**15
 """Numbers in a table are smaller: netem has 16 bits for each."""
+LARGEST = 1 << 20
+"""[byte] No table is larger: netem takes 16,384 numbers."""
 
 
 def numbers_of(text: str) -> list[int] | None:
@@ -36,7 +38,9 @@ def read_table(path: Path, mean: float | None, spread: float | None) -> ExtraDel
     Raises LinkFileError.
     """
     try:
-        numbers = numbers_of(path.read_text(encoding="utf-8"))
+        with path.open("rb") as file:
+            text = file.read(LARGEST + 1).decode()
+        numbers = numbers_of(text) if len(text) <= LARGEST else None
     except (OSError, ValueError):
         return None
     if numbers is None or not is_table(numbers):

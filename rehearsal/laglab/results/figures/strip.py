@@ -34,6 +34,7 @@ CAUSES = {
     "stale": ("v", ORANGE),
     "out of limits": ("^", GREEN),
     "not finite": ("P", SKY),
+    "incomplete": ("+", BLACK),
 }
 """How a message that was lost or refused is marked."""
 LANE = 0.16
@@ -51,7 +52,7 @@ def draw_delays(axes: Axes, shown: Shown, direction: str, bottom: bool = True) -
     lanes = {cause: times for cause, times in view.lost.items() if len(times)}
     for number, (cause, times) in enumerate(lanes.items()):
         height = top * (1 + LANE * (number + 0.6))
-        marker, color = CAUSES.get(cause, ("x", BLACK))
+        marker, color = CAUSES.get(cause, ("1", BLACK))
         axes.plot(
             times / shown.clock.seconds,
             np.full(len(times), height),

@@ -10,6 +10,7 @@ from laglab.results.columns import (
     columns_of,
     joined,
     places,
+    rising,
     stride,
     thinned,
 )
@@ -58,11 +59,12 @@ def _taken(run: Run, file: str, take: Callable[[Columns], Columns]) -> Iterator[
 
 
 def _note_due(run: Run, ticks: Trace) -> None:
-    """When the command of each tick came into force."""
+    """When the command of each tick came into force; until the robot began again, if it did."""
+    last = ticks["time"][rising(ticks["tick"]) - 1]
     for piece in run.table_pieces(ARRIVALS_FILE):
         came = arrival_columns(piece, "command")
-        there, at = places(ticks["tick"], came["tick"])
-        ticks["due"][at] = came["due"][there]
+        there, at = places(ticks["tick"], came["tick"][came["time"] <= last])
+        ticks["due"][at] = came["due"][came["time"] <= last][there]
 
 
 def _latest(arrivals: Columns, direction: str, every: int) -> Columns:

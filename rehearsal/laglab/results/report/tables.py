@@ -58,7 +58,7 @@ def tick_columns(
     columns |= _errors("", deviation(trace, loop_estimates(trace)))
     for name in shadows:
         columns |= _errors(f"_{name}", deviation(trace, shadow_estimates(trace, name)))
-    claimed = _claimed(trace["tick"], claims)
+    claimed = _claimed(trace["time"], claims)
     columns |= {name: claimed[name] for name in COVARIANCES}
     for axis, variance in zip(AXES, VARIANCES, strict=True):
         within = 2 * np.sqrt(np.maximum(claimed[variance], 0.0))
@@ -71,10 +71,10 @@ def _errors(suffix: str, off: Array) -> dict[str, Array]:
     return {f"{axis}_error{suffix}": off[:, i] for i, axis in enumerate(AXES)}
 
 
-def _claimed(ticks: Array, claims: Columns) -> dict[str, Array]:
-    """Beside the ticks; NaN where nothing was claimed."""
-    there, at = places(ticks, claims["tick"])
-    columns = {name: np.full(len(ticks), np.nan) for name in COVARIANCES}
+def _claimed(times: Array, claims: Columns) -> dict[str, Array]:
+    """At these times; NaN where nothing was claimed."""
+    there, at = places(times, claims["time"])
+    columns = {name: np.full(len(times), np.nan) for name in COVARIANCES}
     for name, column in columns.items():
         column[at] = claims[name][there]
     return columns

@@ -31,9 +31,11 @@ def heard_ticks(
 
     `first` is the run's first tick; the session's first, if it is not given.
     """
-    in_force, last = -1, -1
+    in_force, last, before = -1, -1, None
     for heard in session:
-        first = heard.tick if first is None else first
+        if before is not None and heard.tick < before:
+            in_force = last = -1
+        first, before = origin(first, before, heard.tick), heard.tick
         arrivals: list[ArrivalRow] = []
         for z in heard.measurements:
             arrivals.append(_arrival("measurement", z.tick, heard.tick, first, sample_time))
@@ -45,6 +47,14 @@ def heard_ticks(
         time = (heard.tick - first) * sample_time
         claims = [claimed(heard.estimate, time)] if heard.estimate else []
         yield HeardTick(heard, arrivals, claims)
+
+
+def origin(first: int | None, last: int | None, tick: int) -> int:
+    """The tick at which a run's time is 0, now that one more is heard: where the robot's ticks have
+    begun again, the time goes on."""
+    if first is None:
+        return tick
+    return tick - (last - first + 1) if last is not None and tick < last else first
 
 
 def _arrival(direction: str, stamp: int, tick: int, first: int, sample_time: float) -> ArrivalRow:

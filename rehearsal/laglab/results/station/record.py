@@ -1,10 +1,10 @@
 """What a station alone can keep of a run: what it heard and said."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from laglab.results.station.glance import StationGlance
-from laglab.results.station.heard import heard_ticks
+from laglab.results.station.heard import heard_ticks, origin
 from laglab_gateway import TLOG_FILE, FileRecorder, Recorder, TraceRow
 from laglab_station import Onlooker, SessionTick, read_session
 
@@ -72,8 +72,10 @@ def _noted(
 ) -> Iterator[SessionTick]:
     """The same, its arrivals and claims recorded as it goes by."""
     for heard, arrivals, claims in heard_ticks(session, sample_time):
-        recorder.arrivals(arrivals)
-        recorder.claims(claims)
+        if arrivals:
+            recorder.arrivals(arrivals)
+        if claims:
+            recorder.claims(claims)
         yield heard
 
 
@@ -83,9 +85,12 @@ def station_rows(
     """A row a tick heard: no true pose; the measurement sampled then and the command in force from
     then on, however late the one came and the other was told of."""
     waiting: dict[int, Cells] = {}
-    first: int | None = None
+    first, last = None, None
     for heard in session:
-        first = heard.tick if first is None else first
+        if last is not None and heard.tick < last:
+            yield from _rows(waiting, first or 0, sample_time)
+            waiting = {}
+        first, last = origin(first, last, heard.tick), heard.tick
         waiting[heard.tick] = _said(heard)
         for message in heard.measurements:
             if message.tick in waiting:
@@ -96,8 +101,12 @@ def station_rows(
         while next(iter(waiting)) < heard.tick - latest:
             tick = next(iter(waiting))
             yield _row(tick, first, sample_time, waiting.pop(tick))
+    yield from _rows(waiting, first or 0, sample_time)
+
+
+def _rows(waiting: Mapping[int, Cells], first: int, sample_time: float) -> Iterator[TraceRow]:
     for tick, cells in waiting.items():
-        yield _row(tick, first or 0, sample_time, cells)
+        yield _row(tick, first, sample_time, cells)
 
 
 def _said(heard: SessionTick) -> Cells:

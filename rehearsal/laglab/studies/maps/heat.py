@@ -16,7 +16,7 @@ from laglab.results.figures import sheet
 from laglab.studies.maps.grid import Field, Sorted
 from laglab.studies.maps.labels import in_cell, key_label, panel_label, tick_labels
 from laglab.studies.maps.margin import Plane
-from laglab.studies.maps.marks import HALF, NOTHING, draw_border, explain, hatch_diverged
+from laglab.studies.maps.marks import HALF, NOTHING, draw_border, explain, hatch_diverged, ink
 from laglab.studies.maps.measures import Estimate, Measure
 from laglab.studies.maps.runs import Layout
 
@@ -55,9 +55,8 @@ class Look(NamedTuple):
         return (*grey, 1.0) if np.isnan(value) else self.colours(float(self.scale(value)))
 
     def ink(self, value: float) -> str:
-        """Black on what is bright, white on what is dark."""
-        red, green, blue, _ = self.colour(value)
-        return "black" if 0.3 * red + 0.59 * green + 0.11 * blue > HALF else "white"
+        """What is written on it."""
+        return ink(*self.colour(value)[:3])
 
 
 def draw_maps(by: Layout, into: Sorted, maps: Sequence[Map], margins: Sequence[Plane]) -> Figure:

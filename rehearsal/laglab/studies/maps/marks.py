@@ -24,6 +24,11 @@ WIDE = 8.0
 """[inches] Of a figure below which the legend has one column."""
 
 
+def ink(red: float, green: float, blue: float) -> str:
+    """Black on what is bright, white on what is dark; each from 0 to 1."""
+    return "black" if 0.3 * red + 0.59 * green + 0.11 * blue > HALF else "white"
+
+
 class Line(NamedTuple):
     """The border of one of the law's loops."""
 

@@ -27,6 +27,7 @@ from laglab.results.report.plots import dressed, heading
 from laglab.studies.maps.drawing import telling
 from laglab.studies.maps.grid import Field, Sorted, fields, sorted_into
 from laglab.studies.maps.labels import in_cell, key_label, panel_label, value_label
+from laglab.studies.maps.marks import ink
 from laglab.studies.maps.measures import Estimate, Measure
 from laglab.studies.maps.reading import read_runs
 from laglab.studies.maps.runs import Layout, StudyRuns, layout
@@ -34,8 +35,6 @@ from laglab.studies.sweep.loading import to_toml
 from laglab.studies.sweep.study import Study
 
 NOTHING = "#cccccc"
-HALF = 128
-"""Of the brightness that a screen has."""
 MOST_WRITTEN = 12
 """A map of more columns has no room for numbers in its cells."""
 
@@ -87,12 +86,12 @@ class _Scale(NamedTuple):
         )
 
     def ink(self, value: float) -> str:
-        """Black on what is bright, white on what is dark."""
+        """What is written on it."""
         place = (value - self.low) / (self.high - self.low) if self.high > self.low else 0.0
         last = len(self.palette) - 1
         colour = NOTHING if np.isnan(value) else self.palette[round(place * last)]
         red, green, blue = (int(colour[at : at + 2], 16) for at in (1, 3, 5))
-        return "black" if 0.3 * red + 0.59 * green + 0.11 * blue > HALF else "white"
+        return ink(red / 255, green / 255, blue / 255)
 
 
 def _maps(of: Measure, all_: Sequence[Field], by: Layout, into: Sorted) -> list[figure]:
