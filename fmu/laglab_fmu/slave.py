@@ -217,8 +217,10 @@ def open_slave(path: Path, make: Callable[[str], Slave], stack: ExitStack) -> Sl
     stack.callback(shutil.rmtree, folder, ignore_errors=True)
     folder.mkdir(mode=0o700)  # after the callback, as an interrupt may come in between
     try:
-        fmpy.extract(path, str(folder), include=_is_needed)
+        _extract(path, folder)
         slave = make(str(folder))
+    except CallError:
+        raise
     except Exception as error:  # fmpy raises nothing narrower
         raise CallError(f"{path} does not start ({error}); run `laglab fmu build`") from error
     stack.callback(slave.free)
@@ -226,6 +228,16 @@ def open_slave(path: Path, make: Callable[[str], Slave], stack: ExitStack) -> Sl
         # A loaded library needs its file no more, and a process that is killed cleans nothing up.
         shutil.rmtree(folder)
     return slave
+
+
+def _extract(path: Path, folder: Path) -> None:
+    """Raises CallError, when it is not the file that is to blame."""
+    try:
+        fmpy.extract(path, str(folder), include=_is_needed)
+    except OSError as error:
+        if not path.is_file():
+            raise
+        raise CallError(f"{path} cannot be unpacked into {folder}: {error.strerror}") from error
 
 
 def _is_needed(name: str) -> bool:

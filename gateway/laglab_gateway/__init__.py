@@ -13,10 +13,9 @@ from laglab_gateway.errors import (
     UnplaceableError,
 )
 from laglab_gateway.link.channel import Channel
-from laglab_gateway.link.fates import Fates, RandomFates
+from laglab_gateway.link.fates import LONGEST_EXTRA, Fates, RandomFates
 from laglab_gateway.link.impairments import IDEAL, Burst, ExtraDelay, Impairments
 from laglab_gateway.link.log import (
-    LONGEST_EXTRA,
     MOST_TICKS,
     LinkRow,
     RecordedFates,

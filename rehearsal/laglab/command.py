@@ -120,6 +120,10 @@ def _exit_code(arguments: list[str] | None) -> int:
         return _say(str(error), ScenarioError.exit_code)
     except OSError as error:
         return _say(_of_the_system(error), RunError.exit_code)
+    except UnicodeEncodeError as error:
+        return _say(
+            f"{error.object!r} is no name in UTF-8: give it another", ScenarioError.exit_code
+        )
     except (typer.Abort, KeyboardInterrupt):
         code = INTERRUPTED
     return _say("interrupted", code) if code == INTERRUPTED else code

@@ -37,6 +37,10 @@ class ResultsError(LaglabError):
     exit_code = 4
 
 
+class UndrawableError(ResultsError):
+    """The numbers are too large for a picture; the text names the file."""
+
+
 class NoRunError(ResultsError):
     """What is to be read is no run's; the text names the file."""
 

@@ -21,6 +21,7 @@ def folder_place(named: str, path: Path) -> Path:
 
     `named` is how the command line calls it.
     """
+    _refuse_nameless(named, path)
     try:
         path.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=path).close()
@@ -33,6 +34,7 @@ def folder_place(named: str, path: Path) -> Path:
 
 def file_place(named: str, path: Path) -> Path:
     """The file, which can be written; what it holds is still there. Raises PlaceError."""
+    _refuse_nameless(named, path)
     try:
         there = path.exists() or path.is_symlink()
         if path.is_dir():
@@ -44,6 +46,21 @@ def file_place(named: str, path: Path) -> Path:
     except OSError as error:
         raise PlaceError(f"{named} {path}: cannot write there: {error.strerror}") from error
     return path
+
+
+def _refuse_nameless(named: str, path: Path) -> None:
+    """What a system may call a file, and nobody can write down."""
+    if "\0" in str(path) or not is_text(str(path)):
+        raise PlaceError(f"{named} {str(path)!r}: that is no name in UTF-8: give it another")
+
+
+def is_text(name: str) -> bool:
+    """Whether it can be written; a name that is not UTF-8 comes from the system as if it were."""
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 @contextmanager

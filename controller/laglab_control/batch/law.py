@@ -68,7 +68,7 @@ def limited(
     v, omega = _clamp(asked.v, limits.v_max), _clamp(asked.omega, limits.omega_max)
     if P is not None and limits.caution is not None:
         variance = np.maximum(P.xx, P.yy)
-        wide = variance > limits.caution**2
+        wide = variance > limits.caution * limits.caution
         if wide.any():
             share = np.where(wide, limits.caution / np.sqrt(variance), 1.0)
             v, omega = share * v, share * omega

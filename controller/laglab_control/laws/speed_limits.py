@@ -46,7 +46,9 @@ class SpeedLimits:
         if self.caution is None:
             return 1.0
         variance = max(float(P[0, 0]), float(P[1, 1]))
-        return 1.0 if variance <= self.caution**2 else self.caution / math.sqrt(variance)
+        return (
+            1.0 if variance <= self.caution * self.caution else self.caution / math.sqrt(variance)
+        )
 
 
 def _clamp(value: float, limit: float | None) -> float:

@@ -13,6 +13,8 @@ from laglab_gateway.link.timeline import Event, in_force, within
 
 LEAST_SHARE = 1e-12
 """What is rarer is drawn as if it were as rare as that: at 0 and 1 delays may be infinite."""
+LONGEST_EXTRA = 1e4
+"""[s] No frame is later than that."""
 
 
 class FateKind(StrEnum):
@@ -67,7 +69,8 @@ class RandomFates:
         received = self._flip_bits(link, raw)
         kind = FateKind.DELIVERED if received == raw else FateKind.CORRUPTED
         copies = 2 if self._happens(link.duplicate) else 1
-        return [Fate(kind, waited + self._late(link), received) for _ in range(copies)]
+        late = (waited + self._late(link) for _ in range(copies))
+        return [Fate(kind, min(each, LONGEST_EXTRA), received) for each in late]
 
     def _happens(self, probability: float) -> bool:
         return probability > 0 and self._rng.random() < probability

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from laglab_gateway.errors import TimelineError
-from laglab_gateway.link.fates import Fate, FateKind
+from laglab_gateway.link.fates import LONGEST_EXTRA, Fate, FateKind
 from laglab_gateway.link.timeline import Direction
 
 
@@ -75,8 +75,6 @@ def _done(fate: str) -> FateKind:
 
 MOST_TICKS = 10_000_000
 """Of a log: a day at a hundred a second."""
-LONGEST_EXTRA = 1e4
-"""[s] No frame is that late."""
 
 
 def read_link_log(path: Path, direction: Direction) -> list[LinkRow]:

@@ -77,6 +77,8 @@ def trace_pieces(path: Path, rows: int = 5_000) -> Iterator[Trace]:
 def _columns(lines: list[list[str]]) -> Trace:
     if len(lines[-1]) != len(TraceRow._fields):
         del lines[-1]
+    if any(len(line) != len(TraceRow._fields) for line in lines):
+        raise ValueError("a row has another number of columns")
     cells = [[float(cell or "nan") for cell in line] for line in lines]
     table = np.array(cells, dtype=np.float64).T
     return dict(zip(TraceRow._fields, table, strict=True)) if cells else {}

@@ -2,6 +2,7 @@
 
 import keyword
 import re
+import shutil
 from collections.abc import Mapping
 from importlib import resources
 from importlib.util import find_spec
@@ -10,7 +11,8 @@ from string import Template
 from typing import NamedTuple
 
 from laglab.check import KINDS, SHIPPED, Kind
-from laglab.errors import PlaceError, ScenarioError
+from laglab.errors import PlaceError, ResultsError, ScenarioError
+from laglab.files import write_whole
 
 TEMPLATES = resources.files("laglab.new") / "templates"
 RUNS: Mapping[Kind, str] = {
@@ -51,11 +53,15 @@ def make_package(kind: Kind, name: str, parent: Path) -> Made:
     }
     try:
         folder.mkdir(parents=True)
-        for file, template in files.items():
-            text = (TEMPLATES / f"{template}.template").read_text(encoding="utf-8")
-            (folder / file).write_text(Template(text).substitute(told), encoding="utf-8")
     except OSError as error:
         raise PlaceError(f"{folder} cannot be made: {error.strerror}") from error
+    try:
+        for file, template in files.items():
+            text = (TEMPLATES / f"{template}.template").read_text(encoding="utf-8")
+            write_whole(folder / file, Template(text).substitute(told))
+    except ResultsError:
+        shutil.rmtree(folder, ignore_errors=True)  # the next attempt is to find none
+        raise
     use = RUNS[kind].format(name=name)
     commands = (f"pip install -e {folder}", f"laglab check {name}", use, f"pytest {folder}")
     return Made(folder, commands)

@@ -57,7 +57,7 @@ def csv_pieces(path: Path, names: Sequence[str], parsed: Callable[[Lines], T]) -
                 raise NoRunError(f"{path}: expected the columns {','.join(names)}")
             while piece := list(islice(lines, AT_A_TIME)):
                 yield parsed(piece)
-    except (OSError, ValueError, csv.Error) as error:
+    except (OSError, ValueError, OverflowError, csv.Error) as error:
         raise NoRunError(f"{path} cannot be read: {error}") from error
 
 

@@ -5,10 +5,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.errors import RefusedError, RunError
+from laglab.errors import RefusedError, RunError, UndrawableError
 from laglab.results.columns import Columns, columns_of
 from laglab.results.digest import Digest, digest, followed
 from laglab.results.figures import save_figure
@@ -79,8 +80,17 @@ def complete(
     summary = summarise(scenario, way, ending, numbers, compared, following)
     write_summary(summary, directory)
     run = Run(scenario, summary, directory)
-    if figure:
+    return _pictured(run, directory) if figure else run
+
+
+def _pictured(run: Run, directory: Path) -> Run:
+    """With its figure; where that cannot be drawn, the run is what it is all the same."""
+    try:
         save_figure(run.figure, directory)
+    except UndrawableError as error:
+        told = (*run.summary.warnings, str(error))
+        run = replace(run, summary=msgspec.structs.replace(run.summary, warnings=told))
+        write_summary(run.summary, directory)
     return run
 
 

@@ -12,6 +12,8 @@ from laglab.results.summary import SUMMARY_FILE
 from laglab.scenario import Scenario
 from laglab_gateway import ROWS, TLOG_FILE, TRACE_FILE
 
+STUDY_FILE = "study.toml"
+"""Of a study's folder."""
 REPORT_FILE = "report.html"
 OURS = (SCENARIO_FILE, SUMMARY_FILE, TRACE_FILE, TLOG_FILE, *ROWS, FIGURE_FILE, REPORT_FILE)
 
@@ -26,6 +28,8 @@ def place(scenario: Scenario, out: Path | None, force: bool = False, suffix: str
         directory = _fresh(Path("runs"), re.sub(r"[^\w.-]", "-", scenario.name + suffix))
     else:
         directory = folder_place("--out", out)
+        if (directory / STUDY_FILE).exists():
+            raise PlaceError(f"--out {out}: a study's results are there: take another folder")
         if not force and (taken := [name for name in OURS if (directory / name).exists()]):
             raise PlaceError(
                 f"--out {out}: another run's results are there already ({', '.join(taken)}): take "

@@ -1,6 +1,6 @@
 """Scenarios from files: read, put together with what beats the file, and checked."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -45,6 +45,8 @@ def made_of(fields: dict[str, Any], folder: Path) -> Scenario:
 
 
 def _made(fields: dict[str, Any], overrides: Overrides, called: str) -> Scenario:
+    if not isinstance(overrides, Mapping):
+        raise ScenarioError(f"overrides: must be keys with their values, not {overrides!r}")
     try:
         for key, value in overrides.items():
             put(fields, key, value)

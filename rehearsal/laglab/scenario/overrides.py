@@ -38,14 +38,23 @@ def put(fields: dict[str, Any], key: str, value: object) -> None:
 
     Raises: ScenarioError, naming where, when what is on the way is no table.
     """
+    if not isinstance(key, str):
+        raise ScenarioError(f"{key!r}: must be a key, such as 'link.command_delay'")
     here: Any = fields
     *way, last = key.split(".")
     for depth, part in enumerate(way, start=1):
         here = _inside(here, part, ".".join(way[:depth]))
     if isinstance(here, dict):
-        here[last] = value
+        here[last] = of_python(value)
     else:
-        here[_number(here, last, key)] = value
+        here[_number(here, last, key)] = of_python(value)
+
+
+def of_python(value: Any) -> Any:
+    """Of numpy's numbers and arrays what Python has for them."""
+    if isinstance(value, list | tuple):
+        return list(map(of_python, value))
+    return value.tolist() if hasattr(value, "tolist") else value
 
 
 def _inside(here: Any, part: str, place: str) -> Any:

@@ -17,7 +17,7 @@ def read_timeline(reference: str) -> Overrides:
     if path.suffix == ".csv":
         return {"link.replay": reference}
     try:
-        fields = parsed(path.read_text(encoding="utf-8"))
+        fields = parsed(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise ScenarioError(f"--timeline {reference}: {error.strerror}") from None
     except ValueError as error:

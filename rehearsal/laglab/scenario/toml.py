@@ -42,7 +42,7 @@ def read_by_name(
     shipped = shipped_in(folder)
     path = Path(str(folder / f"{reference}.toml")) if reference in shipped else Path(reference)
     try:
-        return path.read_text(encoding="utf-8"), path
+        return path.read_text(encoding="utf-8-sig"), path
     except (FileNotFoundError, IsADirectoryError):
         raise error(
             f"{reference}: no such {what}; shipped: {', '.join(shipped)}; or give a path to a TOML "

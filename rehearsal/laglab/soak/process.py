@@ -41,7 +41,7 @@ class Process:
         self.started_at = monotonic()
         with self._output.open("wb") as output, _heeding_signals():
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "laglab", side, *arguments, "--out", str(folder)],
+                [sys.executable, "-P", "-m", "laglab", side, *arguments, "--out", str(folder)],
                 env=os.environ | {"TMPDIR": str(self._temporary), MARK: mark, "COLUMNS": "200"},
                 stdin=subprocess.DEVNULL,
                 stdout=output,

@@ -11,7 +11,7 @@ def inline_trace(scenario: Path, folder: Path) -> bytes:
     """Its `trace.csv`; empty when there is none."""
     options = ("--transport", "inline", "--set", "estimator.compare=[]", "--out", str(folder))
     subprocess.run(
-        [sys.executable, "-m", "laglab", "run", str(scenario), *options],
+        [sys.executable, "-P", "-m", "laglab", "run", str(scenario), *options],
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,

@@ -1,6 +1,7 @@
 """What a command says of a run that is over."""
 
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 from typing import NoReturn
 
@@ -9,7 +10,6 @@ import typer
 from laglab.errors import RefusedError, ResultsError, RunError
 from laglab.live import LivePage
 from laglab.results.complete import Way, complete
-from laglab.results.figures import FIGURE_FILE
 from laglab.results.place import REPORT_FILE
 from laglab.results.run import Run
 from laglab.results.table import results_table, warnings
@@ -69,5 +69,5 @@ def _show(run: Run) -> None:
         say(f"warning: {warning}")
     print(run.summary.verdict)
     print(f"results in {run.directory}")
-    if run.directory and not (run.directory / FIGURE_FILE).exists():
+    if find_spec("matplotlib") is None:
         say("no figure: matplotlib is not installed here")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.errors import PlaceError
+from laglab.errors import PlaceError, ResultsError
 from laglab.files import file_place, write_whole
 from laglab.results.figures.overlaid import labels
 from laglab.results.figures.panels import COMPONENTS, around, marked
@@ -62,6 +62,8 @@ def save_animation(runs: Sequence[Run], path: Path) -> None:
         try:
             movie.save(str(beside), writer=writer, dpi=DOTS_PER_INCH)
             write_whole(path, beside.read_bytes())
+        except OSError as error:
+            raise ResultsError(f"cannot write {path}: {error.strerror or error}") from error
         finally:
             beside.unlink(missing_ok=True)
 

@@ -7,7 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from laglab.errors import PlaceError, ResultsError
+from laglab.errors import PlaceError, UndrawableError
 from laglab.files import file_place, whole_file
 from laglab.results.figures.style import printed, sheet
 
@@ -19,12 +19,12 @@ DOTS_PER_INCH = 220
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write the figure in the format that the name's ending says. Raises ResultsError."""
+    """Write the figure as the name's ending says. Raises ResultsError, UndrawableError."""
     try:
         with printed(), whole_file(path) as file:
             figure.savefig(file, format=_format(path), dpi=DOTS_PER_INCH)
     except OverflowError as error:
-        raise ResultsError(
+        raise UndrawableError(
             f"{path} cannot be drawn: it shows numbers that are too large; is the run damaged?"
         ) from error
 

@@ -48,6 +48,11 @@ def clock(duration: float) -> Clock:
     return Clock(60.0, "min") if duration > MINUTES else Clock(1.0, "s")
 
 
+GAP = 5.5
+"""Ticks without a claim, of those that are drawn, are not drawn over; a slow station leaves out
+some."""
+
+
 class Shown(NamedTuple):
     """Time in the clock's unit; all else in SI units, as much of it as can be seen."""
 
@@ -113,18 +118,27 @@ class Shown(NamedTuple):
         return start, end if end > start else start + self.scenario.sample_time
 
 
+def broken(time: Array, rows: Array, longest: float) -> tuple[Array, Array]:
+    """With a row of NaN wherever more than `longest` [s] lie between two: there a line breaks."""
+    after = np.flatnonzero(np.diff(time) > longest) + 1
+    return np.insert(time, after, time[after]), np.insert(rows, after, np.nan, axis=0)
+
+
 def shown(run: Run) -> Shown:
     """All that is drawn of it. Raises ResultsError, TraceError."""
     trace = run.drawn
     unit = clock(float(trace["time"][-1]))
     claims = run.drawn_table(CLAIMS_FILE)
     variances = np.stack([claims[name].astype(float) for name in VARIANCES], axis=1)
+    time, variances = broken(
+        claims["time"].astype(float), variances, GAP * run.stride * run.scenario.sample_time
+    )
     return Shown(
         run.scenario,
         unit,
         trace,
         trace["time"] / unit.seconds,
-        claims["time"].astype(float) / unit.seconds,
+        time / unit.seconds,
         np.sqrt(np.maximum(variances, 0.0)),
         link_view(run),
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from laglab.errors import ResultsError
 from laglab.results.figures.marks import time_axis
 from laglab.results.figures.panels import draw_component, draw_error, draw_shadows, draw_speed
 from laglab.results.figures.plane import draw_path
@@ -42,6 +43,8 @@ def draw_run(run: Run, width: Width = "two") -> Figure:
 
     Raises: ResultsError, TraceError.
     """
+    if width not in INCHES:
+        raise ResultsError(f"width: take one of {', '.join(INCHES)}, not {width!r}")
     told = shown(run)
     rows = _one(told) if width == "one" else _two(told)
     heights = [_height(told, row[0]) for row in rows]

@@ -6,7 +6,9 @@ child to end in order. Reports come out on its standard output, a line each; wha
 there goes to standard error. Its temporary files are in a folder of its own, which both clear: it
 may crash, and we may be killed.
 
-    python -m laglab.runs.processes.child MODULE:FUNCTION once|again FOLDER
+    python -P -m laglab.runs.processes.child MODULE:FUNCTION once|again FOLDER
+
+-P: the current directory may have a `random.py` of its own, which is not to be the library's.
 """
 
 import importlib
@@ -81,7 +83,7 @@ def started(
     arguments = (target, "again" if again else "once")
     with tempfile.TemporaryDirectory(prefix="laglab-", ignore_cleanup_errors=True) as folder:
         process = subprocess.Popen(
-            [sys.executable, "-m", "laglab.runs.processes.child", *arguments, folder],
+            [sys.executable, "-P", "-m", "laglab.runs.processes.child", *arguments, folder],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             start_new_session=True,  # a Ctrl-C in the terminal is for us, who end it

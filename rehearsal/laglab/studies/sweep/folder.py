@@ -14,14 +14,15 @@ import msgspec
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from laglab.errors import NoRunError
+from laglab.errors import NoRunError, PlaceError
 from laglab.files import BESIDE, folder_place, write_whole
+from laglab.results.place import STUDY_FILE
+from laglab.results.summary import SUMMARY_FILE
 from laglab.studies.sweep.cells.cell import Cell
 from laglab.studies.sweep.cells.compute import DESCRIPTION
 from laglab.studies.sweep.loading import study_of, to_toml
 from laglab.studies.sweep.study import Study
 
-STUDY_FILE = "study.toml"
 CELLS = "cells"
 ABANDONED = 3600.0
 """[s] A file half written longer ago than this nobody will finish."""
@@ -37,6 +38,8 @@ class Folder:
     def made(cls, path: Path, study: Study) -> "Folder":
         """For the study, from now on; what is there stays. Raises: PlaceError, ResultsError."""
         folder_place("--out", path)
+        if (path / SUMMARY_FILE).exists():
+            raise PlaceError(f"--out {path}: a run's results are there: take another folder")
         folder = cls(path)
         for half in folder_place("--out", folder.cells).glob(BESIDE):
             with suppress(OSError):

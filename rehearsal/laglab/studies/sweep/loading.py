@@ -15,12 +15,12 @@ from laglab.scenario.model import FILES, plain
 from laglab.scenario.paths import anchored
 from laglab.scenario.tables.table import Table
 from laglab.scenario.toml import parsed, read_by_name, shipped_in
-from laglab.studies.sweep.study import Study
+from laglab.studies.sweep.study import MOST_SEED, Study
 from laglab_control import FAR
 from laglab_gateway.values import Positive, Whole, saying, wording
 
 SHIPPED = resources.files("laglab.studies.sweep") / "shipped"
-Seed = Annotated[Whole, Field(ge=0, lt=2**31)]
+Seed = Annotated[Whole, Field(ge=0, lt=MOST_SEED)]
 Seeds = Annotated[
     Annotated[Whole, Field(ge=1, lt=2**31)] | Annotated[list[Seed], Field(min_length=1)],
     saying(

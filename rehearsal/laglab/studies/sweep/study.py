@@ -13,11 +13,14 @@ from laglab.errors import StudyError
 from laglab.scenario import Scenario, changed
 from laglab.scenario.explain import spelled
 from laglab.scenario.model import FILES
+from laglab.scenario.overrides import of_python
 from laglab.studies.sweep.cells.cell import Cell
 from laglab.version import code_version
 from laglab_control import FAR
 from laglab_control.plugins import Group, source_of
 
+MOST_SEED = 2**31
+"""Seeds are below it."""
 MOST_SEEDS = 250
 """Of one cell: enough for a task of its own, in a batch or not."""
 
@@ -40,6 +43,9 @@ class Study:
     description: str = ""
 
     def __post_init__(self) -> None:
+        if not isinstance(self.scenario, Scenario):
+            raise StudyError(f"scenario: must be one, as `load` gives it, not {self.scenario!r}")
+        object.__setattr__(self, "seeds", _seeds(self.seeds))
         object.__setattr__(self, "grid", {key: _axis(key, self.grid[key]) for key in self.grid})
         if "seed" in self.grid:
             raise StudyError("grid: seed: the seeds of a study are said by `seeds`")
@@ -124,12 +130,23 @@ class Study:
         return number if self.seeds == range(1, number + 1) else list(self.seeds)
 
 
+def _seeds(seeds: Sequence[int]) -> Sequence[int]:
+    """Each whole, 0 or more and below MOST_SEED. Raises: StudyError."""
+    kept = seeds if isinstance(seeds, range) else tuple(of_python(list(seeds)))
+    ends = {kept[0], kept[-1]} if isinstance(kept, range) and kept else kept
+    for seed in ends:
+        if type(seed) is not int or not 0 <= seed < MOST_SEED:
+            raise StudyError(f"seeds: must be whole, 0 or more and below 2^31, not {seed!r}")
+    return kept
+
+
 def _axis(key: str, values: Sequence[object]) -> tuple[object, ...]:
     """The values of one key; numbers all of one kind, so that they make a column.
 
     Raises: StudyError.
     """
-    if not len(values):
+    values = of_python(list(values))
+    if not values:
         raise StudyError(f"grid: {key}: must have a value at least, not []")
     kinds = {_kind(value) for value in values}
     if kinds == {int, float}:

@@ -1,0 +1,197 @@
+"""Names, numbers and folders that nobody thought of: a run, or a line that says what is wrong."""
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import laglab
+from laglab.command import main
+from laglab.errors import LaglabError, StudyError
+from laglab.results.figures.shown import broken
+
+SHORT = {"duration": 0.2}
+RUN = ("run", "lab", "--duration", "0.2")
+NAMELESS = os.fsdecode(b"a\xe9")
+"""Not UTF-8: a system may call a file so."""
+
+BIG = """
+from laglab_gateway import Reading
+
+class Big:
+    def __init__(self, *told): pass
+    def read(self): return Reading(*[1e308] * 8)
+    def step(self, v, omega): pass
+    def place(self, x, y, theta): pass
+"""
+
+Capture = pytest.CaptureFixture[str]
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def ended(capsys: Capture, *arguments: str) -> tuple[int, str]:
+    """The exit code and what was said on standard error, which is in a line."""
+    with pytest.raises(SystemExit) as end:
+        main(list(arguments))
+    code = end.value.code
+    assert isinstance(code, int)
+    return code, capsys.readouterr().err
+
+
+def a_line(error: str, *words: str) -> bool:
+    return error.count("\n") == 1 and all(word in error for word in words)
+
+
+@pytest.mark.parametrize("name", ["random", "csv", "signal", "numpy"])
+def test_the_users_modules_are_not_taken_for_the_librarys(here: Path, name: str) -> None:
+    """Theirs are looked for in the current directory, but last."""
+    (here / f"{name}.py").write_text("raise RuntimeError('mine')")
+    command = Path(sys.executable).with_name("laglab")
+    done = subprocess.run([command, *RUN], capture_output=True, text=True, timeout=60, check=False)
+    assert done.stderr.count("\n") <= 1, done.stderr
+    assert "results in" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("link.command.extra_delay.mean", 1e308),
+        ("link.measurement.bandwidth", 1e-320),
+        ("link.command.reorder_by", 1e308),
+        ("law.caution", 1e300),
+    ],
+)
+def test_no_finite_number_is_too_large(key: str, value: float) -> None:
+    more = {"link.command.reorder": 1.0, "noise": True}
+    assert laglab.run("lab", {**SHORT, **more, key: value}).summary.outcome == "completed"
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        ("--out", f"x/{NAMELESS}"),
+        ("--set", f"name={NAMELESS}", "--out", "x"),
+        ("--transport", "inline", "--out", NAMELESS),
+    ],
+)
+@pytest.mark.usefixtures("here")
+def test_what_is_not_text_is_told(told: tuple[str, ...], capsys: Capture) -> None:
+    code, error = ended(capsys, *RUN, *told)
+    assert code == 2
+    assert a_line(error, "UTF-8")
+
+
+@pytest.mark.parametrize("file", ["link.csv", "arrivals.csv"])
+def test_a_number_that_no_table_holds_is_told(here: Path, file: str, capsys: Capture) -> None:
+    laglab.run("lab-radio", SHORT, out=here / "run")
+    lines = (here / "run" / file).read_text().splitlines()
+    direction, _, *rest = lines[1].split(",")
+    lines[1] = ",".join([direction, "9" * 20, *rest])
+    (here / "run" / file).write_text("\n".join(lines))
+    code, error = ended(capsys, "figure", "run", "--out", "a.png")
+    assert code == 2
+    assert a_line(error, file)
+
+
+def test_a_row_with_other_columns_is_told(here: Path, capsys: Capture) -> None:
+    laglab.run("fig6", SHORT, out=here / "run")
+    trace = here / "run" / "trace.csv"
+    lines = trace.read_text().splitlines()
+    trace.write_text("\n".join([*lines[:5], lines[5].rpartition(",")[0], *lines[6:]]) + "\n")
+    code, error = ended(capsys, "figure", "run", "--out", "a.png")
+    assert code == 2
+    assert a_line(error, "another number of columns")
+
+
+def test_a_line_breaks_where_nothing_was_claimed() -> None:
+    time, rows = broken(np.array([0.0, 1.0, 5.0, 6.0]), np.ones((4, 3)), 2.0)
+    assert time.tolist() == [0.0, 1.0, 5.0, 5.0, 6.0]
+    assert np.isnan(rows[:, 0]).tolist() == [False, False, True, False, False]
+
+
+def test_a_run_whose_figure_cannot_be_drawn_has_a_verdict(here: Path, capsys: Capture) -> None:
+    (here / "big_plant.py").write_text(BIG)
+    longer = ("--duration", "0.5", "--set", "plant.kind=big_plant:Big", "--out", "run")
+    code, error = ended(capsys, "run", "lab", *longer)
+    assert code == 3
+    assert "warning: run/figure.png cannot be drawn: it shows numbers that are too large" in error
+    assert "matplotlib" not in error
+    assert "diverged" in laglab.open_run(here / "run").summary.verdict
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        {"seeds": [1.5]},
+        {"seeds": [True]},
+        {"seeds": [-1]},
+        {"seeds": [2**31]},
+        {"seeds": range(-3, 3)},
+        {"seeds": [1], "scenario": "lab"},
+        {"seeds": [1], "grid": {"link.command_delay": np.array([])}},
+    ],
+)
+def test_a_study_that_cannot_be_is_refused_in_python_too(told: Mapping[str, Any]) -> None:
+    with pytest.raises(StudyError):
+        laglab.Study(**{"scenario": laglab.load("lab"), **told})
+
+
+def test_numbers_of_numpy_are_numbers() -> None:
+    scenario = laglab.load("lab", {"link.command_delay": np.int64(3), "start": np.zeros(3)})
+    assert (scenario.link.n, scenario.start) == (3, (0.0, 0.0, 0.0))
+    study = laglab.Study(scenario, np.arange(3), {"link.measurement_delay": np.arange(2)})
+    assert study.seeds == (0, 1, 2)
+    assert study.grid == {"link.measurement_delay": (0, 1)}
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: laglab.run("lab", SHORT, out="a\0b"),
+        lambda: laglab.load("lab", {5: 1}),  # type: ignore[dict-item]
+        lambda: laglab.load("lab", ["noise"]),  # type: ignore[arg-type]
+        lambda: laglab.run("fig6", SHORT).figure("three"),  # type: ignore[arg-type]
+    ],
+)
+def test_what_is_wrong_in_python_is_an_error_of_ours(call: Callable[[], object]) -> None:
+    with pytest.raises(LaglabError):
+        call()
+
+
+def test_a_file_as_windows_editors_write_it_is_read(here: Path) -> None:
+    (here / "mine.toml").write_text("noise = true\n", encoding="utf-8-sig")
+    assert laglab.load(str(here / "mine.toml")).noise
+
+
+def test_runs_and_studies_keep_out_of_each_others_folders(here: Path, capsys: Capture) -> None:
+    laglab.run("fig6", SHORT, out=here / "run")
+    (here / "study.toml").write_text('scenario = "fig6"\n')
+    short = ("--set", "duration=0.2")
+    assert ended(capsys, "sweep", "study.toml", *short, "--out", "study")[0] == 0
+    for command in (("sweep", "study.toml", *short, "--out", "run"), (*RUN, "--out", "study")):
+        code, error = ended(capsys, *command)
+        assert code == 2
+        assert a_line(error, "results are there: take another folder")
+    assert not (here / "run" / "cells").exists()
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="no shell limits the size of files here")
+def test_a_package_for_which_there_is_no_room_leaves_nothing(here: Path) -> None:
+    command = f"ulimit -f 0; {sys.executable} -m laglab new law my-law"
+    done = subprocess.run(
+        ["bash", "-c", command], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.returncode == 4, done.stderr
+    assert a_line(done.stderr, "File too large")
+    assert not (here / "my-law").exists()
