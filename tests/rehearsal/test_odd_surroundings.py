@@ -114,6 +114,16 @@ def test_a_row_with_other_columns_is_told(here: Path, capsys: Capture) -> None:
     assert a_line(error, "another number of columns")
 
 
+@pytest.mark.parametrize("file", ["scenario.toml", "trace.csv", "summary.json"])
+def test_a_file_that_is_gone_is_named(here: Path, file: str, capsys: Capture) -> None:
+    laglab.run("fig6", SHORT, out=here / "run")
+    (here / "run" / file).unlink()
+    code, error = ended(capsys, "figure", "run", "--out", "a.png")
+    assert code == 2
+    assert a_line(error, "laglab: run", file)
+    assert "Errno" not in error
+
+
 def test_a_line_breaks_where_nothing_was_claimed() -> None:
     time, rows = broken(np.array([0.0, 1.0, 5.0, 6.0]), np.ones((4, 3)), 2.0)
     assert time.tolist() == [0.0, 1.0, 5.0, 5.0, 6.0]

@@ -100,7 +100,7 @@ def test_a_csv_lies_beside_the_scenario_and_is_found_from_anywhere(
     summary = rehearsed(str(folder / "mine.toml"))
     assert summary["converged"]
     assert summary["law"] == "tracking"
-    assert summary["schema_version"] == 3
+    assert summary["schema_version"] == 4
     assert summary["following"].keys() == {"rms", "largest"}
     # Without noise, and n ticks late at first: the robot catches up, and stands where it ends.
     assert summary["final"]["v"] == pytest.approx(0.0, abs=1e-3)

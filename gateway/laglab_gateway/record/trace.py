@@ -68,7 +68,9 @@ def trace_pieces(path: Path, rows: int = 5_000) -> Iterator[Trace]:
                 if columns := _columns(piece):
                     empty = False
                     yield columns
-    except (OSError, ValueError, csv.Error) as error:
+    except OSError as error:
+        raise TraceError(f"{path} cannot be read: {error.strerror}") from error
+    except (ValueError, csv.Error) as error:
         raise TraceError(f"{path} is not a readable trace: {error}") from error
     if empty:
         raise TraceError(f"{path} holds no row: the run ended before its first tick was over")

@@ -48,7 +48,7 @@ def generate(xml: Path, language: str, output: Path) -> None:
     `language` is one of mavgen's names: C, Python3, WLua, … `output` is a file for Python3
     and WLua, a folder for the others. mavgen evaluates enum values, so `xml` must be the caller's
     own.
-    Raises DialectError with mavgen's words when it refuses.
+    Raises DialectError with mavgen's words when it refuses, and OSError.
     """
     from pymavlink.generator import mavgen
 
@@ -66,6 +66,8 @@ def generate(xml: Path, language: str, output: Path) -> None:
         try:
             with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
                 done = mavgen.mavgen(options, [str(source)])
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, str(output)) from error
         except (SystemExit, Exception) as error:
             raise DialectError(f"{xml}: mavgen fails: {error}\n{said.getvalue()}") from error
     if done is False:

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from laglab.errors import ResultsError
+from laglab.errors import NoRunError, ResultsError
 from laglab.results.columns import (
     Columns,
     at_ticks,
@@ -209,4 +209,6 @@ def open_run(directory: str | Path) -> Run:
     """
     folder = Path(directory)
     summary = read_summary(folder)
+    if not (folder / SCENARIO_FILE).is_file():
+        raise NoRunError(f"{folder / SCENARIO_FILE} is not there: a run leaves one")
     return Run(load(str(folder / SCENARIO_FILE)), summary, folder)

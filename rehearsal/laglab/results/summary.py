@@ -12,7 +12,7 @@ from laglab_gateway import TLOG_FILE, LinkReport, TimingReport
 from laglab_station import StationReport
 
 SUMMARY_FILE = "summary.json"
-SCHEMA_VERSION = 3
+SCHEMA_VERSION = 4
 
 Side = Literal["both", "robot", "station"]
 Seen = Literal["true", "measured"]

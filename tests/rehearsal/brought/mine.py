@@ -183,6 +183,11 @@ class TwoNumbers(LawAt40):
         return 0.0, 0.0
 
 
+class TextLaw(LawAt40):
+    def other(self):
+        return "0.1", "0.2", None
+
+
 class NoMethod:
     def __init__(self, model):
         self.start = self.predict = lambda a, b: None

@@ -43,6 +43,7 @@ ANSWERS = {
     "estimator:Ragged": "Ragged.ahead must answer a finite pose (3,), not [[1",
     "law:FailingLaw": "FailingLaw.drive: ZeroDivisionError",
     "law:TwoNumbers": "TwoNumbers.drive: must answer v, omega and a mem",
+    "law:TextLaw": "TextLaw.drive: must answer v, omega and a memory, not ('0.1'",
 }
 
 
