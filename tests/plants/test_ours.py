@@ -9,8 +9,8 @@ from laglab.errors import RefusedError, ScenarioError, StudyError
 from laglab.runs.plant import open_plant
 from laglab.studies.many import why_one_by_one
 from laglab.studies.sweep.loading import load_study
-from laglab.studies.sweep.plan import planned
 from laglab.studies.sweep.sweeping import swept
+from laglab.studies.sweep.work import planned
 from laglab.studies.workers import Processes
 
 from .building import ROVER_MAP, rover

@@ -18,7 +18,7 @@ import laglab as lab
 from laglab.errors import RunError, StudyError
 from laglab.studies.sweep.cells.tasks import grouped
 from laglab.studies.sweep.loading import load_study, shipped_study_names
-from laglab.studies.sweep.plan import planned
+from laglab.studies.sweep.work import work_left
 from laglab.studies.workers import Processes, as_done
 
 from .studying import (
@@ -219,7 +219,7 @@ def memory_of(seeds: int) -> int:
     cells = sum(1 for _ in study.cells())
     tracemalloc.start()
     try:
-        planned(study)
+        work_left(study)
         tasks = as_done(AtOnce(), id, grouped(study.cells()), ahead=100)
         assert sum(len(task.cells) for task, _ in tasks) == cells
         return tracemalloc.get_traced_memory()[1]
@@ -236,7 +236,7 @@ def test_memory_does_not_grow_with_the_study() -> None:
 def test_every_shipped_study_can_be_run(name: str) -> None:
     study = load_study(name)
     assert study.description
-    assert planned(study).runs == study.runs < 20_000
+    assert work_left(study).runs == study.runs < 20_000
 
 
 def test_without_a_study_they_are_listed(laglab: Laglab) -> None:

@@ -8,7 +8,6 @@ import typer
 
 from laglab.commands.options import WorkersOption
 from laglab.extras import SEEING, STUDYING, require
-from laglab.progress import progress_of_study
 from laglab.results.place import REPORT_FILE
 from laglab.scenario import assignment
 from laglab.tables import plain_table, say, terminal
@@ -57,23 +56,18 @@ def sweep(
         require(SEEING)
     from laglab.studies.sweep.folder import Folder
     from laglab.studies.sweep.loading import load_study
-    from laglab.studies.sweep.plan import check_size, planned
     from laglab.studies.sweep.report import strangers_told, summary
-    from laglab.studies.sweep.sweeping import compute
+    from laglab.studies.sweep.sweeping import work_off
+    from laglab.studies.sweep.work import check_size, work_left
 
     chosen = load_study(study, dict(map(assignment, told or [])), seeds)
     check_size(chosen, limit)
-    planned(chosen)
+    work_left(chosen)
     folder = Folder.made(out or Path("studies") / chosen.name, chosen)
-    plan = planned(chosen, None if force else folder)
     for line in strangers_told(chosen, folder):
         say(line)
-    with (
-        progress_of_study(chosen.name, plan.runs, plan.seconds) as done,
-        _workers(scheduler, workers) as executor,
-    ):
-        compute(chosen, folder, executor, done, force)
-    said = summary(chosen, folder, plan)
+    work = work_off(chosen, folder, _workers(scheduler, workers), again=force)
+    said = summary(chosen, folder, work)
     terminal().print(said, highlight=False)
     if report:
         from laglab.studies.maps.page import save_study_page

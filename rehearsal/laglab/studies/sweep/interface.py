@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from laglab.extras import STUDYING, require
-from laglab.studies.sweep.plan import MOST_RUNS
+from laglab.studies.sweep.work import MOST_RUNS
 
 if TYPE_CHECKING:
     from laglab.studies.sweep.result import StudyResult

@@ -5,13 +5,13 @@ from collections.abc import Iterator
 import pyarrow.compute as pc
 
 from laglab.studies.sweep.folder import Folder
-from laglab.studies.sweep.plan import Plan
 from laglab.studies.sweep.study import Study
+from laglab.studies.sweep.work import Work
 
 MOST_NAMED = 3
 
 
-def summary(study: Study, folder: Folder, plan: Plan) -> str:
+def summary(study: Study, folder: Folder, work: Work) -> str:
     """How it went, in a few lines."""
     runs = converged = diverged = 0
     for table in folder.tables(study.cells(), ["converged", "diverged_tick"]):
@@ -21,9 +21,9 @@ def summary(study: Study, folder: Folder, plan: Plan) -> str:
     share = f"{converged / runs:.1%}" if runs else "none"
     many = "1 run" if runs == 1 else f"{runs} runs"
     lines = [f"{study.name}: {many}, {converged} converged ({share}), {diverged} diverged"]
-    if kept := runs - plan.runs:
+    if kept := runs - work.runs:
         lines.append(f"{kept} of them had been made before")
-    lines += [f"{count} made {way}" for way, count in plan.ways.most_common()]
+    lines += [f"{count} made {way}" for way, count in work.ways.most_common()]
     return "\n".join([*lines, f"tables in {folder.cells}"])
 
 

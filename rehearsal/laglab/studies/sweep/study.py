@@ -30,7 +30,7 @@ class Study:
     """A scenario, over the product of the grid's values and over seeds.
 
     Raises StudyError, when something in it cannot be. Whether the cells' scenarios can be, is not
-    known before `planned` has tried.
+    known before `work_left` has tried.
     """
 
     scenario: Scenario

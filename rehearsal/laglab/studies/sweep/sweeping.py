@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from tempfile import mkdtemp
 
@@ -13,9 +13,9 @@ from laglab.studies.sweep.cells.tasks import done, grouped
 from laglab.studies.sweep.cells.ways import seconds
 from laglab.studies.sweep.folder import Folder
 from laglab.studies.sweep.loading import load_study
-from laglab.studies.sweep.plan import check_size, planned
 from laglab.studies.sweep.result import StudyResult
 from laglab.studies.sweep.study import Study
+from laglab.studies.sweep.work import Work, check_size, work_left
 from laglab.studies.workers import Executor, Processes, as_done
 
 AHEAD = 512
@@ -33,20 +33,33 @@ def swept(
     """As `sweep` says."""
     chosen = study if isinstance(study, Study) else load_study(str(study))
     check_size(chosen, limit)
-    planned(chosen)
+    work_left(chosen)
     if out is None:
         folder = Folder.made(Path(mkdtemp(prefix="laglab-")), chosen)
         result = StudyResult.passing(chosen, folder, chosen.origin)
     else:
         folder = Folder.made(Path(out), chosen)
         result = StudyResult(chosen, folder, chosen.origin)
-    plan = planned(chosen, folder)
-    with (
-        progress_of_study(chosen.name, plan.runs, plan.seconds, progress) as told,
-        Processes(0) if executor is None else nullcontext(executor) as workers,
-    ):
-        compute(chosen, folder, workers, told)
+    workers = Processes(0) if executor is None else nullcontext(executor)
+    work_off(chosen, folder, workers, progress)
     return result
+
+
+def work_off(
+    study: Study,
+    folder: Folder,
+    workers: AbstractContextManager[Executor],
+    progress: bool = True,
+    again: bool = False,
+) -> Work:
+    """Do what is left, or all of it `again`; says how much that was. Raises as `compute`."""
+    work = work_left(study, None if again else folder)
+    with (
+        progress_of_study(study.name, work.runs, work.seconds, progress) as told,
+        workers as executor,
+    ):
+        compute(study, folder, executor, told, again)
+    return work
 
 
 def compute(

@@ -21,7 +21,7 @@ MOST_RUNS = 1_000_000
 """More than that are run only when somebody says that they are meant."""
 
 
-class Plan(NamedTuple):
+class Work(NamedTuple):
     """What is still to be done, summed up."""
 
     ways: Counter[How]
@@ -35,7 +35,7 @@ class Plan(NamedTuple):
         return self.ways.total()
 
 
-def planned(study: Study, folder: "Folder | None" = None) -> Plan:
+def work_left(study: Study, folder: "Folder | None" = None) -> Work:
     """The study's cells that are not in the folder, summed up. Raises StudyError: a cell, in the
     folder or not, cannot be run."""
     ways: Counter[How] = Counter()
@@ -50,7 +50,7 @@ def planned(study: Study, folder: "Folder | None" = None) -> Plan:
         if folder is None or not folder.has(cell):
             ways[how(cell)] += len(cell.seeds)
             cost += seconds(cell)
-    return Plan(ways, cost)
+    return Work(ways, cost)
 
 
 def _check_robot(study: Study, cell: Cell) -> None:
