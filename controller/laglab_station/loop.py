@@ -5,8 +5,7 @@ from contextlib import suppress
 from time import monotonic, sleep
 
 from laglab_protocol import (
-    ROBOT_COMPONENT,
-    ROBOT_SYSTEM,
+    ROBOT,
     UNANNOUNCED,
     End,
     EndpointError,
@@ -33,8 +32,6 @@ IN_FORCE = 1.0
 HURRIED = 2e-4
 """[s] After an answer that took longer it is seen whether more than one tick has come meanwhile: to
 look costs a hundredth of that."""
-
-ROBOT = ROBOT_SYSTEM, ROBOT_COMPONENT
 
 
 class Onlooker:

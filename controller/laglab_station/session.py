@@ -5,10 +5,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from laglab_protocol import (
-    ROBOT_COMPONENT,
-    ROBOT_SYSTEM,
-    STATION_COMPONENT,
-    STATION_SYSTEM,
+    ROBOT,
+    STATION,
     Applied,
     Assembly,
     Command,
@@ -21,9 +19,6 @@ from laglab_protocol import (
     Tick,
     read_tlog,
 )
-
-ROBOT = ROBOT_SYSTEM, ROBOT_COMPONENT
-STATION = STATION_SYSTEM, STATION_COMPONENT
 
 
 class SessionTick(NamedTuple):

@@ -13,7 +13,7 @@ from laglab_gateway.errors import (
     UnplaceableError,
 )
 from laglab_gateway.link.channel import Channel
-from laglab_gateway.link.fates import LONGEST_EXTRA, Fates, RandomFates
+from laglab_gateway.link.fates import LONGEST_EXTRA, FateKind, Fates, RandomFates
 from laglab_gateway.link.impairments import IDEAL, Burst, ExtraDelay, Impairments
 from laglab_gateway.link.log import (
     MOST_TICKS,
@@ -87,6 +87,7 @@ __all__ = [
     "DirectionReport",
     "Event",
     "ExtraDelay",
+    "FateKind",
     "Fates",
     "FileRecorder",
     "Gateway",

@@ -14,7 +14,14 @@ from numpy.typing import NDArray
 
 from laglab.files import write_whole
 from laglab.link.errors import LinkFileError
-from laglab_gateway import LONGEST_EXTRA, MOST_TICKS, LinkRow, TimelineError, read_link_log
+from laglab_gateway import (
+    LONGEST_EXTRA,
+    MOST_TICKS,
+    FateKind,
+    LinkRow,
+    TimelineError,
+    read_link_log,
+)
 
 if TYPE_CHECKING:
     from laglab_gateway import Direction
@@ -22,8 +29,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-DELIVERED, LOST = "delivered", "lost"
-CAME = (DELIVERED, "late")
+CAME = (FateKind.DELIVERED, FateKind.LATE)
 """Fates of frames that came: one that is too late for play-out came all the same."""
 DIRECTIONS: tuple[Direction, Direction] = ("command", "measurement")
 
@@ -95,7 +101,15 @@ def rows_of(measured: MeasuredLink) -> Iterator[LinkRow]:
             if tick < len(flow.delay):
                 lost = bool(np.isnan(flow.delay[tick]))
                 extra = 0.0 if lost else round(float(flow.delay[tick]), 7)
-                yield LinkRow(direction, tick, 0, 0, flow.size, LOST if lost else DELIVERED, extra)
+                yield LinkRow(
+                    direction,
+                    tick,
+                    0,
+                    0,
+                    flow.size,
+                    FateKind.LOST if lost else FateKind.DELIVERED,
+                    extra,
+                )
 
 
 def write_link_log(measured: MeasuredLink, path: Path) -> None:

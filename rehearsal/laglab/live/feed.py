@@ -9,6 +9,7 @@ from laglab.live.messages import Caller, Line, Rows
 from laglab_gateway import (
     ArrivalRow,
     ClaimRow,
+    FateKind,
     LinkRow,
     Recorder,
     Tapped,
@@ -97,7 +98,7 @@ class Feed(Recorder):
         kept = {row.tick for row in rows.trace}
         rows.claims = [each for each in rows.claims if each.tick in kept]
         rows.arrivals, rows.timing = _last(rows.arrivals[::every]), _last(rows.timing[::every])
-        rows.link = _last([row for row in rows.link if row.fate != "delivered"])
+        rows.link = _last([row for row in rows.link if row.fate != FateKind.DELIVERED])
         rows.stopped = self._controls.stopped()
         frames, rows.frames = rows.frames, rows.frames[:MOST_FRAMES]
         self._caller.say(rows)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab.results.columns import Columns
-from laglab_gateway import ARRIVALS_FILE, FOLLOWED, LINK_FILE
+from laglab_gateway import ARRIVALS_FILE, FOLLOWED, LINK_FILE, FateKind
 
 if TYPE_CHECKING:
     from laglab.results.run import Run
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 DIRECTIONS = ("command", "measurement")
-DELIVERED, OUTAGE = "delivered", "outage"
 SILENT = 20
 """[ticks] When nothing gets through for so long it is an outage, whatever the record calls it."""
 
@@ -144,8 +143,8 @@ class _Losses:
         for name in DIRECTIONS:
             rows = piece["direction"] == name
             ticks, fates = piece["tick"][rows].astype(float), piece["fate"][rows]
-            self._silences[name].add(ticks, fates != DELIVERED, fates == OUTAGE)
-            self.counts[name].update(fate for fate in fates.tolist() if fate != DELIVERED)
+            self._silences[name].add(ticks, fates != FateKind.DELIVERED, fates == FateKind.OUTAGE)
+            self.counts[name].update(fate for fate in fates.tolist() if fate != FateKind.DELIVERED)
             for cause in set(self.counts[name]) & set(fates.tolist()):
                 times = ticks[fates == cause][:: self._stride] * self._sample_time
                 self._lost.setdefault((name, cause), []).append(times)

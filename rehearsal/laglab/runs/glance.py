@@ -11,6 +11,7 @@ from laglab_gateway import (
     FOLLOWED,
     ArrivalRow,
     ClaimRow,
+    FateKind,
     LinkRow,
     Recorder,
     Tapped,
@@ -74,7 +75,7 @@ class Glances(Recorder):
                 self._followed = row.time
 
     def link(self, rows: Iterable[LinkRow]) -> None:
-        self._lost += sum(row.fate != "delivered" for row in rows)
+        self._lost += sum(row.fate != FateKind.DELIVERED for row in rows)
 
     def now(self, knows_losses: bool = True) -> Glance | None:
         """At the last tick; None before the first."""

@@ -3,7 +3,7 @@
 import numpy as np
 
 from laglab.link.measured import Array, Flow
-from laglab_gateway import Impairments, RandomFates
+from laglab_gateway import FateKind, Impairments, RandomFates
 
 LEAST = 20_000
 """[frames] With fewer, chance decides."""
@@ -19,7 +19,7 @@ def simulated(link: Impairments, fixed: float, like: Flow, interval: float) -> F
     delay = np.full(count, np.nan)
     for tick in range(count):
         fate = fates.of(tick, float(sent[tick]), frame)[0]
-        if fate.kind == "delivered":
+        if fate.kind is FateKind.DELIVERED:
             delay[tick] = fixed + fate.extra
     return Flow(sent, delay, like.size)
 

@@ -17,7 +17,7 @@ from laglab.results.numbers import (
     shadow_estimates,
 )
 from laglab.scenario import Target
-from laglab_gateway import FOLLOWED, Trace
+from laglab_gateway import FOLLOWED, FateKind, Trace
 
 Array = NDArray[np.float64]
 
@@ -95,7 +95,7 @@ def refusals(arrivals: Columns) -> Columns:
 
 def losses(link: Columns, sample_time: float) -> Columns:
     """As marks: each copy of a frame that did not come through, and why."""
-    lost = link["fate"] != "delivered"
+    lost = link["fate"] != FateKind.DELIVERED
     lanes = np.where(link["direction"][lost] == "command", COMMAND_LOST, MEASUREMENT_LOST)
     time = link["tick"][lost].astype(float) * sample_time
     return {"time": time, "lane": lanes, "what": link["fate"][lost]}

@@ -22,8 +22,7 @@ from laglab_gateway.drive import Drive, Safety, follow, rejection, speeds, super
 from laglab_gateway.link.channel import Channel
 from laglab_gateway.memory import Owed, SpeedMemory
 from laglab_protocol import (
-    ROBOT_COMPONENT,
-    ROBOT_SYSTEM,
+    ROBOT,
     UNANNOUNCED,
     Command,
     Measurement,
@@ -33,7 +32,6 @@ from laglab_protocol import Applied as Recalled
 from laglab_station.hearing import echoes, recalled
 from laglab_station.recalling import Questions
 
-ROBOT = ROBOT_SYSTEM, ROBOT_COMPONENT
 Token = tuple[float, float]
 """The tick of a command, and the share of it that is in force."""
 STANDING: Token = (0.0, 0.0)

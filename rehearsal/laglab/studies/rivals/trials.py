@@ -13,6 +13,7 @@ from laglab.runs.robot_side import link_fates
 from laglab.scenario import Overrides, Scenario, both_ways, changed
 from laglab.studies.judged import judged_run
 from laglab.studies.workers import shared_out
+from laglab_gateway import FateKind
 
 PLAN = 45
 """[ticks] How far the plans reach: their frames still fit into one datagram."""
@@ -131,7 +132,9 @@ def bounds(scenario: Scenario) -> Overrides:
     for direction, delay in own.items():
         ticks = range(min(scenario.must_end(), MOST_TRIED)) if direction in fates else ()
         tried = [fates[direction].of(k, k * Ts, A_FRAME) for k in ticks]  # type: ignore[index]
-        extra = [copy.extra for copies in tried for copy in copies if copy.kind == "delivered"]
+        extra = [
+            copy.extra for copies in tried for copy in copies if copy.kind is FateKind.DELIVERED
+        ]
         late = math.ceil(np.quantile(extra, IN_TIME) / Ts - 1e-9) if extra else 0
         found[f"link.playout.{direction}"] = delay + late
     return found
