@@ -15,7 +15,7 @@ from laglab.studies.rivals import (
     LINKS,
     OWN_LINK,
     STRATEGIES,
-    Outcome,
+    Fared,
     Trial,
     bounds,
     links_of,
@@ -86,7 +86,7 @@ def test_the_bounds_are_those_by_which_nearly_all_are_there() -> None:
 
 
 def test_what_diverges_or_never_settles_is_told_as_that() -> None:
-    def outcome(strategy: str, **keys: object) -> Outcome:
+    def outcome(strategy: str, **keys: object) -> Fared:
         short = laglab.load("fig8", {"duration": 3.0, **keys})
         return tried(Trial("ideal", strategy, short.to_toml()))
 
@@ -98,8 +98,8 @@ def test_what_diverges_or_never_settles_is_told_as_that() -> None:
 
 
 def test_the_scores_are_those_of_the_runs() -> None:
-    def one(converged: bool, settled: float | None, rms: float, driven: float) -> Outcome:
-        return Outcome("loss", "plans", converged, settled, rms, driven)
+    def one(converged: bool, settled: float | None, rms: float, driven: float) -> Fared:
+        return Fared("loss", "plans", converged, settled, rms, driven)
 
     runs = [one(True, 4.0, 0.03, 5.0), one(True, 6.0, 0.04, 4.0), one(False, None, 0.0, 9.0)]
     score = scores(runs)["loss", "plans"]

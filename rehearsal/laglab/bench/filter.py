@@ -38,14 +38,14 @@ P_0 = np.eye(3) * 1e-6
 """Small enough for popf's gain to stay below its delay limit at every delay measured."""
 
 
-class Drive(NamedTuple):
+class DriveRecord(NamedTuple):
     """A made-up record: inputs (N, 2) and measurements (N+1, 3)."""
 
     inputs: Array
     measurements: Array
 
 
-Ticks = Callable[[Drive, int], float]
+Ticks = Callable[[DriveRecord, int], float]
 """Goes through the drive with delay m; gives the seconds a tick took once measurements came."""
 
 DELAYS, CONTROLLER_DELAYS = (4, 40, 400), (2, 20, 200)
@@ -92,11 +92,11 @@ def _growth(result: Result) -> Iterator[Figure]:
         yield Figure(f"{name}, {last} to {first}", growth, "×")
 
 
-def make_drive(ticks: int) -> Drive:
+def make_drive(ticks: int) -> DriveRecord:
     """The robot turns about at random, near where it started."""
     random = np.random.default_rng(1)
     inputs = random.normal(size=(ticks, 2)) * [0.5, 1.0]
-    return Drive(inputs, random.normal(size=(ticks + 1, 3)) * 0.1)
+    return DriveRecord(inputs, random.normal(size=(ticks + 1, 3)) * 0.1)
 
 
 def filters() -> dict[str, Ticks]:
@@ -121,7 +121,7 @@ def controllers() -> dict[str, Ticks]:
     return contenders
 
 
-def _estimator_tick(estimator: Estimator[Any], drive: Drive, m: int) -> float:
+def _estimator_tick(estimator: Estimator[Any], drive: DriveRecord, m: int) -> float:
     arrivals = constant_delay(drive.measurements, m)
     state = estimator.correct(estimator.start(START, P_0), arrivals[0])
     started = 0.0
@@ -132,7 +132,7 @@ def _estimator_tick(estimator: Estimator[Any], drive: Drive, m: int) -> float:
     return (time.perf_counter() - started) / (len(drive.inputs) - m)
 
 
-def _controller_tick(name: str, guard: bool, drive: Drive, m: int) -> float:
+def _controller_tick(name: str, guard: bool, drive: DriveRecord, m: int) -> float:
     config = StationConfig(
         estimator=name,
         limits=STANDING,
@@ -156,7 +156,7 @@ def _controller_tick(name: str, guard: bool, drive: Drive, m: int) -> float:
     return (time.perf_counter() - started) / (len(drive.inputs) - m)
 
 
-def _filterpy_tick(drive: Drive, m: int) -> float:
+def _filterpy_tick(drive: DriveRecord, m: int) -> float:
     """The same model and the same ticks; like our `ekf` it takes z_{k-m} for z_k."""
     from filterpy.kalman import ExtendedKalmanFilter
 

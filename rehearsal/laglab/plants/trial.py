@@ -37,7 +37,7 @@ class TrialOrder(Struct, frozen=True):
     """As TOML."""
 
 
-class Drive(NamedTuple):
+class Driven(NamedTuple):
     """How a plant was driven once."""
 
     readings: list[Reading]
@@ -104,11 +104,11 @@ def tried(scenario: Scenario) -> Trial:
     )
 
 
-def _in_a_child(scenario: Scenario) -> Drive:
+def _in_a_child(scenario: Scenario) -> Driven:
     order = TrialOrder(scenario.to_toml())
     try:
         with asked("plant's", f"{__name__}:drive", order, PATIENCE) as answer:
-            driven: Drive = answer()
+            driven: Driven = answer()
     except GaveUpError as error:
         raise PlantCheckError(str(error)) from None
     except NoAnswerError as error:
@@ -121,14 +121,14 @@ def drive(order: TrialOrder, tell: Tell) -> None:
     answer_all(tell, _driven(Scenario.from_toml(order.scenario)))
 
 
-def _driven(scenario: Scenario) -> Iterator[Drive]:
+def _driven(scenario: Scenario) -> Iterator[Driven]:
     ticks = max(round(PHASE / scenario.sample_time), 1)
     with open_plant(scenario) as opened:
         begun = perf_counter()
         readings = _readings(opened.plant, ticks)
         seconds = perf_counter() - begun
         placed = _placed(opened.plant) if opened.placeable else None
-    yield Drive(readings, seconds, placed, opened.warnings)
+    yield Driven(readings, seconds, placed, opened.warnings)
 
 
 def _readings(plant: Plant, ticks: int) -> list[Reading]:

@@ -17,7 +17,7 @@ from laglab.studies.maps.grid import Field, Sorted
 from laglab.studies.maps.labels import in_cell, key_label, panel_label, tick_labels
 from laglab.studies.maps.margin import Plane
 from laglab.studies.maps.marks import HALF, NOTHING, draw_border, explain, hatch_diverged, ink
-from laglab.studies.maps.measures import Estimate, Measure
+from laglab.studies.maps.measures import Interval, Measure
 from laglab.studies.maps.runs import Layout
 
 if TYPE_CHECKING:
@@ -127,7 +127,7 @@ def _draw(axes: Axes, field: Field, look: Look) -> None:
     )
     hatch_diverged(axes, field)
     for (y, x), centre in np.ndenumerate(field.centre):
-        estimate = Estimate(centre, float(field.low[y, x]), float(field.high[y, x]))
+        estimate = Interval(centre, float(field.low[y, x]), float(field.high[y, x]))
         ink = look.ink(centre)
         if look.written:
             text = in_cell(estimate, look.of.share)

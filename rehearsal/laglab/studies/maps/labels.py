@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from laglab.studies.maps.measures import Estimate
+from laglab.studies.maps.measures import Interval
 
 NAMES = {
     "link.command_delay": "command delay n [ticks]",
@@ -48,7 +48,7 @@ def tick_labels(values: Sequence[object]) -> tuple[list[int], list[str]]:
     return places, [value_label(values[place]) for place in places]
 
 
-def in_cell(estimate: Estimate, share: bool) -> str:
+def in_cell(estimate: Interval, share: bool) -> str:
     """The number, and under it what it lies between."""
     if math.isnan(estimate.centre):
         return "–"

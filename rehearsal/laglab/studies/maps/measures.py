@@ -51,7 +51,7 @@ def measure(column: str) -> Measure:
     return known.get(column, Measure(column, f"{column}\n{OF_RUNS}"))
 
 
-class Estimate(NamedTuple):
+class Interval(NamedTuple):
     """A number, and between what it lies at 95 %; NaN without runs."""
 
     centre: float
@@ -59,10 +59,10 @@ class Estimate(NamedTuple):
     high: float
 
 
-NONE = Estimate(math.nan, math.nan, math.nan)
+NONE = Interval(math.nan, math.nan, math.nan)
 
 
-def share(yes: int, of: int) -> Estimate:
+def share(yes: int, of: int) -> Interval:
     """The share, with Wilson's interval, which also holds near 0 and 1."""
     if not of:
         return NONE
@@ -70,10 +70,10 @@ def share(yes: int, of: int) -> Estimate:
     middle = (p + z / 2) / (1 + z)
     half = math.sqrt(p * (1 - p) * z + z**2 / 4) / (1 + z)
     low, high = min(middle - half, p), max(middle + half, p)  # but for rounding so at 0 and 1
-    return Estimate(p, max(low, 0.0), min(high, 1.0))
+    return Interval(p, max(low, 0.0), min(high, 1.0))
 
 
-def median(values: NDArray[np.float64]) -> Estimate:
+def median(values: NDArray[np.float64]) -> Interval:
     """The median, with the interval between two order statistics, whatever the distribution: the
     ranks are the binomial's, by its normal approximation."""
     known = np.sort(values[np.isfinite(values)])
@@ -82,7 +82,7 @@ def median(values: NDArray[np.float64]) -> Estimate:
     half = Z * math.sqrt(len(known)) / 2
     low = max(math.floor(len(known) / 2 - half), 0)
     high = min(math.ceil(len(known) / 2 + half), len(known) - 1)
-    return Estimate(float(np.median(known)), float(known[low]), float(known[high]))
+    return Interval(float(np.median(known)), float(known[low]), float(known[high]))
 
 
 class Summed(NamedTuple):
@@ -90,7 +90,7 @@ class Summed(NamedTuple):
 
     runs: int
     diverged: int
-    estimate: Estimate
+    estimate: Interval
 
 
 class MeasureValues(NamedTuple):

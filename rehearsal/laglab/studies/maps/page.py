@@ -28,7 +28,7 @@ from laglab.studies.maps.drawing import telling
 from laglab.studies.maps.grid import Field, Sorted, fields, sorted_into
 from laglab.studies.maps.labels import in_cell, key_label, panel_label, value_label
 from laglab.studies.maps.marks import ink
-from laglab.studies.maps.measures import Estimate, Measure
+from laglab.studies.maps.measures import Interval, Measure
 from laglab.studies.maps.reading import read_runs
 from laglab.studies.maps.runs import Layout, StudyRuns, layout
 from laglab.studies.sweep.loading import to_toml
@@ -159,7 +159,7 @@ def _cells(
 ) -> Mapping[str, object]:
     """A row each."""
     centres, lows, highs = (of.ravel().tolist() for of in field[:3])
-    estimates = map(Estimate, centres, lows, highs)
+    estimates = map(Interval, centres, lows, highs)
     numbers = {name: of.ravel().astype(np.float32) for name, of in field._asdict().items()}
     return numbers | {
         "x": [*across] * len(up),

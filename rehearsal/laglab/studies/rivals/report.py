@@ -9,7 +9,7 @@ import numpy as np
 from rich.table import Table
 
 from laglab.results.figures import Width
-from laglab.studies.rivals.trials import Outcome
+from laglab.studies.rivals.trials import Fared
 from laglab.studies.shares import draw_shares
 from laglab.tables import plain_table
 
@@ -41,15 +41,15 @@ Scores = Mapping[tuple[str, str], Score]
 """By link and strategy."""
 
 
-def scores(outcomes: Sequence[Outcome]) -> Scores:
+def scores(outcomes: Sequence[Fared]) -> Scores:
     """Of all that there are."""
-    runs: dict[tuple[str, str], list[Outcome]] = {}
+    runs: dict[tuple[str, str], list[Fared]] = {}
     for one in outcomes:
         runs.setdefault((one.link, one.strategy), []).append(one)
     return {key: _score(ones) for key, ones in runs.items()}
 
 
-def _score(ones: Sequence[Outcome]) -> Score:
+def _score(ones: Sequence[Fared]) -> Score:
     settled = [one.settled for one in ones if one.settled is not None]
     squares = [one.rms**2 for one in ones if one.rms is not None]
     return Score(

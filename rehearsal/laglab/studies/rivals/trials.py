@@ -83,7 +83,7 @@ class Trial(Struct, frozen=True):
     """As TOML."""
 
 
-class Outcome(Struct, frozen=True):
+class Fared(Struct, frozen=True):
     """What became of it."""
 
     link: str
@@ -140,12 +140,12 @@ def bounds(scenario: Scenario) -> Overrides:
     return found
 
 
-def outcomes(jobs: Sequence[Trial], workers: int) -> Iterator[Outcome]:
+def outcomes(jobs: Sequence[Trial], workers: int) -> Iterator[Fared]:
     """As they are done. Raises RunError."""
     return shared_out(tried, jobs, workers)
 
 
-def tried(trial: Trial) -> Outcome:
+def tried(trial: Trial) -> Fared:
     """In a worker: one run."""
     scenario = Scenario.from_toml(trial.scenario)
     done = run(scenario)
@@ -153,7 +153,7 @@ def tried(trial: Trial) -> Outcome:
         judged = judged_run(done)
         driven = np.hypot(*np.diff(robot_pose(done.trace)[:, :2], axis=0).T).sum()
         rms = np.hypot(judged.rms_x[0], judged.rms_y[0])
-    return Outcome(
+    return Fared(
         trial.link,
         trial.strategy,
         bool(judged.converged[0]),
