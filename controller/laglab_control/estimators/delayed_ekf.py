@@ -14,6 +14,7 @@ from laglab_control.past.log import Log, append, cut, logged
 from laglab_control.past.sliding import SlidingProduct
 
 W = TypeVar("W")
+Window = SlidingProduct[Vector, W]
 
 
 class Filtered(NamedTuple):
@@ -33,7 +34,7 @@ class DelayedState(Generic[W]):
 
     tick: int
     filtered: Log[Filtered]
-    window: SlidingProduct[Vector, W]
+    window: Window[W]
     windows: Windows[W]
     innovation: Innovation | None = None
     """Of the newest measurement of this tick's correction."""
@@ -70,17 +71,15 @@ class DelayedEkf(Estimator[DelayedState[W]]):
         """The prior of tick 0."""
         prior = Belief(x, P)
         first = Filtered(0, None, prior, None, prior, None)
-        window: SlidingProduct[Vector, W] = SlidingProduct(
-            self.windows.compose, self.windows.identity
-        )
+        window: Window[W] = SlidingProduct(self.windows.compose, self.windows.identity)
         return DelayedState(0, logged(first), window, self.windows)
 
     def predict(self, state: DelayedState[W], u: Vector) -> DelayedState[W]:
         """One more input in the window; the EKF stays at most `memory` ticks behind."""
         tick = state.tick + 1
         window = state.window.push(u, state.windows.over(u))
-        predicted = DelayedState(tick, state.filtered, window, state.windows)
-        return self._advance(predicted, tick - self.memory, None, {})
+        filtered, window = self._advance(state.filtered, window, tick - self.memory, None, {})
+        return DelayedState(tick, filtered, window, state.windows)
 
     def correct(
         self,
@@ -90,52 +89,49 @@ class DelayedEkf(Estimator[DelayedState[W]]):
     ) -> DelayedState[W]:
         """Roll back to the oldest news, replay from there, then go on to the newest measurement."""
         measurements = by_sampling(measurements, state.tick)
-        newest = state.filtered.newest.tick
-        oldest = newest - min(state.filtered.length - 1, self.memory)
-        known = {j + 1: u for j, u in inputs if oldest <= j < state.tick}
-        late = {s: z for s, z in reversed(measurements) if oldest <= s <= newest}
-        late_known = {tick: u for tick, u in known.items() if tick <= newest}
-        if late or late_known:
-            state = self._revise(state, late, late_known)
+        filtered, window = state.filtered, state.window
+        oldest = filtered.newest.tick - min(filtered.length - 1, self.memory)
+        known = {j + 1: u for j, u in inputs if oldest <= j < state.tick} if inputs else {}
+        if known or (measurements and measurements[0].tick <= filtered.newest.tick):
+            late = {s: z for s, z in reversed(measurements) if oldest <= s <= filtered.newest.tick}
+            filtered = self._revise(filtered, late, known)
         for s, z in measurements:
-            state = self._advance(state, s, z, known)
-        window = self._put_right(state, known)
-        if not measurements:
-            return DelayedState(state.tick, state.filtered, window, state.windows)
-        innovation = _innovation(state.filtered, measurements[-1].tick)
-        return DelayedState(state.tick, state.filtered, window, state.windows, innovation)
+            filtered, window = self._advance(filtered, window, s, z, known)
+        if known:
+            window = self._put_right(filtered.newest.tick, window, known)
+        innovation = _innovation(filtered, measurements[-1].tick) if measurements else None
+        return DelayedState(state.tick, filtered, window, state.windows, innovation)
 
     def innovation(self, state: DelayedState[W]) -> Innovation | None:
         """z_s - h(x^-_s), with the prior that the EKF has at s by now."""
         return state.innovation
 
     def _advance(
-        self, state: DelayedState[W], s: int, z: Vector | None, known: Mapping[int, Vector]
-    ) -> DelayedState[W]:
+        self,
+        filtered: Log[Filtered],
+        window: Window[W],
+        s: int,
+        z: Vector | None,
+        known: Mapping[int, Vector],
+    ) -> tuple[Log[Filtered], Window[W]]:
         """Bring the EKF up to tick s > its own, and correct it there."""
-        filtered, window = state.filtered, state.window
         tick = filtered.newest.tick
-        if tick >= s:
-            return state
         while tick < s:
             u, window = window.pop()
             tick += 1
             filtered = self._extend(filtered, known.get(tick, u), z if tick == s else None)
-        return DelayedState(state.tick, filtered, window, state.windows)
+        return filtered, window
 
-    def _put_right(
-        self, state: DelayedState[W], known: Mapping[int, Vector]
-    ) -> SlidingProduct[Vector, W]:
-        """The window with those of its inputs that were wrong put right; `known` by the tick that
-        each led to."""
-        newest = state.filtered.newest.tick
+    def _put_right(self, newest: int, window: Window[W], known: Mapping[int, Vector]) -> Window[W]:
+        """The window from tick `newest` on with those of its inputs that were wrong put right;
+        `known` by the tick that each led to."""
         if all(tick <= newest for tick in known):
-            return state.window
-        window = state.window.emptied()
-        for tick, u in enumerate(state.window, start=newest + 1):
-            right = known.get(tick, u)
-            window = window.push(right, state.windows.over(right))
-        return window
+            return window
+        right = window.emptied()
+        for tick, u in enumerate(window, start=newest + 1):
+            told = known.get(tick, u)
+            right = right.push(told, self.windows.over(told))
+        return right
 
     def _extend(self, filtered: Log[Filtered], u: Vector, z: Vector | None) -> Log[Filtered]:
         newest = filtered.newest
@@ -148,12 +144,14 @@ class DelayedEkf(Estimator[DelayedState[W]]):
         return Filtered(tick, u, prior, z, *kalman.correct(self.model, prior, z))
 
     def _revise(
-        self, state: DelayedState[W], late: Mapping[int, Vector], known: Mapping[int, Vector]
-    ) -> DelayedState[W]:
+        self, log: Log[Filtered], late: Mapping[int, Vector], known: Mapping[int, Vector]
+    ) -> Log[Filtered]:
         """With measurements and inputs (by the tick they led to) that came after the EKF passed."""
-        log = state.filtered
+        passed = [tick for tick in (*late, *known) if tick <= log.newest.tick]
+        if not passed:
+            return log
         oldest = log.newest.tick - (log.length - 1)
-        filtered, undone = cut(log, max(min({*late, *known}) - oldest, 0))
+        filtered, undone = cut(log, max(min(passed) - oldest, 0))
         for past in undone:
             z = late.get(past.tick) if past.z is None else past.z
             u = known.get(past.tick, past.u)
@@ -161,7 +159,7 @@ class DelayedEkf(Estimator[DelayedState[W]]):
                 filtered = logged(self._corrected(past.tick, u, past.prior, z))
             else:
                 filtered = self._extend(filtered, u, z)
-        return DelayedState(state.tick, filtered, state.window, state.windows)
+        return filtered
 
 
 def _innovation(filtered: Log[Filtered], s: int) -> Innovation | None:
