@@ -104,6 +104,7 @@ def assert_robot_let_go(robot: Process) -> None:
     assert "the far end is gone" in ended(robot, 1)
 
 
+@pytest.mark.slow
 def test_the_same_controller_stabilises_a_real_robot(
     rig: Callable[..., Rig], tmp_path: Path
 ) -> None:

@@ -10,7 +10,7 @@ from laglab.runs.plant import open_plant
 from laglab.studies.many import why_one_by_one
 from laglab.studies.sweep.loading import load_study
 from laglab.studies.sweep.sweeping import swept
-from laglab.studies.sweep.work import planned
+from laglab.studies.sweep.work import work_left
 from laglab.studies.workers import Processes
 
 from .building import ROVER_MAP, rover
@@ -71,7 +71,7 @@ def study(folder: Path, plant: str) -> Path:
 def test_a_study_of_a_foreign_robot_is_made_one_by_one(tmp_path: Path, fmus: Path) -> None:
     (tmp_path / "rover.fmu").write_bytes((fmus / "rover.fmu").read_bytes())
     path = study(tmp_path, f'fmu = "rover.fmu"{ROVER_MAP}')
-    [(how, runs)] = planned(load_study(str(path))).ways.items()
+    [(how, runs)] = work_left(load_study(str(path))).ways.items()
     assert runs == 4
     assert str(how) == "one by one: of rover.fmu there is one a run, and no fleet (plant)"
     with Processes(1) as workers:
@@ -83,7 +83,7 @@ def test_a_study_of_a_foreign_robot_is_made_one_by_one(tmp_path: Path, fmus: Pat
 def test_a_robot_that_cannot_be_had_is_told_before_a_study_begins(tmp_path: Path) -> None:
     path = study(tmp_path, f'fmu = "none.fmu"{ROVER_MAP}')
     with pytest.raises(StudyError, match=r"own: with .*none.fmu: there is no such file"):
-        planned(load_study(str(path)))
+        work_left(load_study(str(path)))
 
 
 def test_another_fmu_of_that_name_is_another_study(tmp_path: Path, library: Path) -> None:

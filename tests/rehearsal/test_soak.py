@@ -66,6 +66,7 @@ def test_the_same_seed_draws_the_same_turns_and_all_of_them_can_be() -> None:
     assert {turn.blow.signal for turn in turns if turn.blow} == set(SIGNALS)
 
 
+@pytest.mark.slow
 def test_strangers_change_nothing(tmp_path: Path) -> None:
     """And what is checked has been there: ticks, samples, strangers, the other trace."""
     played = play(CROWDED, tmp_path / "turn")
@@ -79,6 +80,7 @@ def test_strangers_change_nothing(tmp_path: Path) -> None:
         assert part.samples
 
 
+@pytest.mark.slow
 def test_nor_does_a_pause(tmp_path: Path) -> None:
     played = play(PAUSED, tmp_path / "turn")
     assert failures(played) == {}

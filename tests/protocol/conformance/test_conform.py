@@ -57,6 +57,7 @@ def key_file(tmp_path: Path) -> Path:
     return tmp_path / "key"
 
 
+@pytest.mark.slow
 def test_a_faultless_robot_conforms(key_file: Path) -> None:
     assert robot_with("").failed == []
     assert robot_with("", key_file).failed == []
