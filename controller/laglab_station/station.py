@@ -35,9 +35,6 @@ LONGEST_GAP = MEMORY
 """Ticks without a word, after which nobody knows what the robot did meanwhile."""
 
 
-BEHIND = "was passed over: answers take longer than ticks, and a newer one had come"
-
-
 class Station:
     """Answers each tick of the robot once with ESTIMATE (unless `raw`) and COMMAND.
 
@@ -214,7 +211,11 @@ class Station:
         said = self._tick_in(frame)
         if said is None or self.tick is None or not self.tick < said.tick < newest:
             return False
-        self.warn("behind", f"tick {said.tick} {BEHIND}")
+        self.warn(
+            "behind",
+            f"tick {said.tick} was passed over: answers take longer than ticks, and a newer one "
+            "had come",
+        )
         came = self._coming.take()
         if came.complete(said):
             if self._played_out:
@@ -256,6 +257,7 @@ class Station:
     def _meet(self, tick: int) -> None:
         """A robot that is new to us at this tick."""
         self._look_back()
+        self._overtaken = Overtaken()
         if self._played_out:
             self._played_out.begin_anew()
         if tick or self.tick is not None:

@@ -49,18 +49,13 @@ def file_place(named: str, path: Path) -> Path:
 
 
 def _refuse_nameless(named: str, path: Path) -> None:
-    """What a system may call a file, and nobody can write down."""
-    if "\0" in str(path) or not is_text(str(path)):
-        raise PlaceError(f"{named} {str(path)!r}: that is no name in UTF-8: give it another")
-
-
-def is_text(name: str) -> bool:
-    """Whether it can be written; a name that is not UTF-8 comes from the system as if it were."""
+    """No file can have NUL in its name, and nobody can write down one that is not UTF-8."""
     try:
-        name.encode()
+        nameless = b"\0" in str(path).encode()
     except UnicodeEncodeError:
-        return False
-    return True
+        nameless = True
+    if nameless:
+        raise PlaceError(f"{named} {str(path)!r}: that is no name in UTF-8: give it another")
 
 
 @contextmanager

@@ -46,6 +46,7 @@ def test_no_message_of_the_robot_harms_the_station(estimator: str, said: list[Me
                 assert math.isfinite(frame.message.v)
                 assert math.isfinite(frame.message.omega)
         station.look_ahead()
+    station.hear_backlog(frames_in(b"".join(map(robot.frame, said))))
     station.report()
 
 

@@ -128,6 +128,7 @@ def test_what_is_wrong_is_the_exit_code(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setenv("TMPDIR", str(tmp_path))  # for children that are not told of another
     found, out, err = check(fmus / "rover.fmu", "--set", f"plant.parameters.{parameter}")
     assert found == code
     assert said in out + err

@@ -88,6 +88,7 @@ def temporaries(
     """What a side had unpacked when it was killed is cleared by who started it."""
     folder = tmp_path_factory.mktemp("tmp")
     monkeypatch.setattr(tempfile, "tempdir", str(folder))
+    monkeypatch.setenv("TMPDIR", str(folder))  # for children that are not told of another
     yield
     assert list(folder.iterdir()) == []
 

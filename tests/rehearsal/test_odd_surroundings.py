@@ -209,11 +209,38 @@ def test_runs_and_studies_keep_out_of_each_others_folders(
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="no shell limits the size of files here")
-def test_a_package_for_which_there_is_no_room_leaves_nothing(here: Path) -> None:
-    command = f"ulimit -f 0; {sys.executable} -m laglab new law my-law"
+@pytest.mark.parametrize(
+    ("room", "command", "code", "said"),
+    [
+        (0, "new law my-law", 4, "cannot write my-law/pyproject.toml"),
+        (0, "animate run --out a.gif", 4, "cannot write a.gif"),
+        (60, "run lab --duration 0.2 --out lab", 2, "Robot3.fmu cannot be unpacked into"),
+    ],
+)
+def test_what_finds_no_room_is_named(
+    here: Path, kept: Path, room: int, command: str, code: int, said: str
+) -> None:
+    shutil.copytree(kept, here / "run")
+    limited = f"ulimit -f {room}; {sys.executable} -m laglab {command}"
     done = subprocess.run(
-        ["bash", "-c", command], capture_output=True, text=True, timeout=60, check=False
+        ["bash", "-c", limited], capture_output=True, text=True, timeout=60, check=False
     )
-    assert done.returncode == 4, done.stderr
-    assert a_line(done.stderr, "File too large")
-    assert not (here / "my-law").exists()
+    assert done.returncode == code, done.stderr
+    assert a_line(done.stderr, said, "File too large")
+    assert not {"my-law", "a.gif"} & {path.name for path in here.iterdir()}
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device here")
+def test_a_parser_for_which_there_is_no_room_is_told(here: Path) -> None:
+    (here / "parser").mkdir()
+    (here / "parser" / "laglab.py").symlink_to("/dev/full")
+    generate = ("protocol", "generate", "--lang", "Python3", "parser")
+    done = subprocess.run(
+        [sys.executable, "-m", "laglab", *generate],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == 4
+    assert a_line(done.stderr, "parser/laglab.py: No space left on device")

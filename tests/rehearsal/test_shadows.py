@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from laglab.results.shadows import beside
+from laglab.results.shadows import shadowing
 
 
 def test_the_first_drives_and_all_are_compared(ended, tmp_path):
@@ -48,5 +48,5 @@ def test_the_station_reports_delays_speed_and_warnings(ended, tmp_path, transpor
 
 def test_what_was_said_of_ticks_that_the_trace_lacks_is_left_out() -> None:
     said = {"tick": np.arange(4.0), **dict.fromkeys(("x", "y", "theta"), np.arange(4.0))}
-    columns = beside({"tick": np.array([0.0, 2.0])}, said, "ekf")
+    columns = shadowing({"tick": np.array([0.0, 2.0])}, said, "ekf")
     assert columns["x_ekf"].tolist() == [0.0, 2.0]

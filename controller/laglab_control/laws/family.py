@@ -56,7 +56,7 @@ class BroughtLaw(Law):
         answer = called(self.name, self.law, "drive", pose, time, memory)
         try:
             v, omega, memory = answer
-            demand = Demand(float(v * 1.0), float(omega * 1.0), memory)  # a text is none
+            demand = Demand(float(v * 1.0), float(omega * 1.0), memory)  # float() takes a text, too
         except (TypeError, ValueError):
             raise PluginFailedError(
                 f"{self.name}.drive: must answer v, omega and a memory, not {shown(answer)}"

@@ -43,12 +43,10 @@ class SpeedLimits:
 
     def _share(self, P: Matrix) -> float:
         """The share of the speeds that the claimed covariance makes advisable."""
-        if self.caution is None:
+        caution, variance = self.caution, max(float(P[0, 0]), float(P[1, 1]))
+        if caution is None or variance <= caution * caution:
             return 1.0
-        variance = max(float(P[0, 0]), float(P[1, 1]))
-        return (
-            1.0 if variance <= self.caution * self.caution else self.caution / math.sqrt(variance)
-        )
+        return caution / math.sqrt(variance)
 
 
 def _clamp(value: float, limit: float | None) -> float:

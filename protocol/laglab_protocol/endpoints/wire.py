@@ -14,7 +14,7 @@ ROUNDING = 1e-6
 
 
 class Wire:
-    """Takes TRANSMIT_BUFFER bytes at a time and gives them back in order, at the line's rate.
+    """Takes bytes, TRANSMIT_BUFFER at most, and gives them back in order, at the line's rate.
 
     All times are in seconds of the caller's clock, which must not go back.
     """

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -62,6 +62,16 @@ ForceOption = Annotated[
 ReportOption = Annotated[
     bool, typer.Option("--report", help="Leave report.html, too; `laglab report` says what it is.")
 ]
+
+
+def some_of(option: str, metavar: str, meant: str, names: Sequence[str]) -> Any:
+    """An option that names some of them."""
+    return typer.Option(
+        option,
+        metavar=metavar,
+        help=f"{meant}; may be repeated: {', '.join(names)}.",
+        autocompletion=lambda: list(names),
+    )
 
 
 def chosen(option: str, named: Sequence[str] | None, known: Iterable[str]) -> list[str]:

@@ -96,7 +96,7 @@ class _Beside:
 
     def of(self, keys: Keys) -> Trace:
         """The columns for these rows; NaN where the table has none for them."""
-        last = keys[rising(keys) - 1]
+        last = rising(keys)[-1]
         self._read_up_to(last)
         columns = {name: np.full(len(keys), np.nan) for name in self._renamed.values()}
         for piece in self._waiting:

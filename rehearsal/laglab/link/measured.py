@@ -101,15 +101,8 @@ def rows_of(measured: MeasuredLink) -> Iterator[LinkRow]:
             if tick < len(flow.delay):
                 lost = bool(np.isnan(flow.delay[tick]))
                 extra = 0.0 if lost else round(float(flow.delay[tick]), 7)
-                yield LinkRow(
-                    direction,
-                    tick,
-                    0,
-                    0,
-                    flow.size,
-                    FateKind.LOST if lost else FateKind.DELIVERED,
-                    extra,
-                )
+                fate = FateKind.LOST if lost else FateKind.DELIVERED
+                yield LinkRow(direction, tick, 0, 0, flow.size, fate, extra)
 
 
 def write_link_log(measured: MeasuredLink, path: Path) -> None:

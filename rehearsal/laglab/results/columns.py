@@ -77,19 +77,29 @@ def thinned(columns: Mapping[str, NDArray[Cell]], every: int) -> dict[str, NDArr
     return {name: column[::every].copy() for name, column in columns.items()}
 
 
-def rising(keys: Array) -> int:
-    """How many of them go up, from the first on: a real robot that begins again counts anew."""
+def rising(keys: Array) -> Array:
+    """Those that go up, from the first on: a real robot that begins again counts anew."""
     falls = np.flatnonzero(np.diff(keys) < 0)
-    return int(falls[0]) + 1 if len(falls) else len(keys)
+    return keys[: falls[0] + 1] if len(falls) else keys
 
 
 def places(keys: Array, wanted: NDArray[np.generic]) -> tuple[NDArray[np.bool_], NDArray[np.intp]]:
     """Which of the `wanted` are among the keys, as far as these go up, and in which rows."""
-    keys = keys[: rising(keys)]
+    keys = rising(keys)
     rows = np.searchsorted(keys, wanted.astype(float))
     there = rows < len(keys)
     there[there] = keys[rows[there]] == wanted[there]
     return there, rows[there]
+
+
+def beside(keys: Array, others: Columns, key: str, names: Iterable[str]) -> dict[str, Array]:
+    """The columns of these `names`, of the rows of `others` whose `key` is among the keys, laid
+    beside them; NaN where there is none."""
+    there, rows = places(keys, others[key])
+    columns = {name: np.full(len(keys), np.nan) for name in names}
+    for name, column in columns.items():
+        column[rows] = others[name][there]
+    return columns
 
 
 def at_ticks(columns: Mapping[str, NDArray[Cell]], ticks: Array) -> dict[str, NDArray[Cell]]:

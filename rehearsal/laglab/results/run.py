@@ -20,7 +20,7 @@ from laglab.results.columns import (
     thinned,
 )
 from laglab.results.figures import Width, draw_run
-from laglab.results.shadows import Shadow, beside, read_shadow, shadow_file, shadow_pieces
+from laglab.results.shadows import Shadow, read_shadow, shadow_file, shadow_pieces, shadowing
 from laglab.results.summary import Summary, read_summary
 from laglab.scenario import Scenario, load
 from laglab_gateway import (
@@ -74,7 +74,7 @@ class Run:
         """All columns, each of shape (ticks + 1,). Raises TraceError, NoRunError."""
         trace = self.kept.trace if self.kept else read_trace(self._folder / TRACE_FILE)
         for name in self.scenario.estimator.compare:
-            trace = trace | beside(trace, self._shadow(name), name)
+            trace = trace | shadowing(trace, self._shadow(name), name)
         return trace
 
     @cached_property
@@ -198,7 +198,7 @@ class Run:
         whole = joined(thinned(each, self.stride) for each in self.pieces())
         for name in self.scenario.estimator.compare:
             shadow = joined(at_ticks(each, whole["tick"]) for each in self.shadow_pieces(name))
-            whole |= beside(whole, shadow, name)
+            whole |= shadowing(whole, shadow, name)
         return whole
 
 

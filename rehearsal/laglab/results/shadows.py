@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab.files import whole_file
-from laglab.results.columns import Lines, csv_pieces, joined, places, rising
+from laglab.results.columns import Lines, beside, csv_pieces, joined, rising
 from laglab.results.numbers import AXES, COVARIANCE, RmsError, deviation
 from laglab.results.summary import Errors
 from laglab.runs.station_side import shadow_config
@@ -89,13 +89,10 @@ def _columns(lines: Lines) -> Shadow:
     return dict(zip(COLUMNS, table.T, strict=True))
 
 
-def beside(trace: Trace, shadow_: Shadow, name: str) -> Trace:
+def shadowing(trace: Trace, shadow_: Shadow, name: str) -> Trace:
     """The estimates as columns of the trace, `x_NAME` and so on; NaN where nothing was said."""
-    columns = {f"{axis}_{name}": np.full(len(trace["tick"]), np.nan) for axis in AXES}
-    there, rows = places(trace["tick"], shadow_["tick"])
-    for axis in AXES:
-        columns[f"{axis}_{name}"][rows] = shadow_[axis][there]
-    return columns
+    estimates = beside(trace["tick"], shadow_, "tick", AXES)
+    return {f"{axis}_{name}": column for axis, column in estimates.items()}
 
 
 def shadow_error(
@@ -107,7 +104,7 @@ def shadow_error(
     done = 0
     for piece in pieces:
         estimates = np.full((len(piece["tick"]), 3), np.nan)
-        ticks = piece["tick"][: rising(piece["tick"])]
+        ticks = rising(piece["tick"])
         while waiting is not None and waiting.tick <= ticks[-1]:
             estimates[int(np.searchsorted(ticks, waiting.tick))] = waiting.x
             waiting = next(coming, None)

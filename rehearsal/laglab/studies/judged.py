@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.results.columns import places
+from laglab.results.columns import beside
 from laglab.results.nees import nees_by_triangle
 from laglab.results.numbers import (
     COVARIANCE,
@@ -138,23 +138,15 @@ def judgements(record: Stretch, diverged: Array, of: Target, measurement_delay: 
 def judged_run(done: Run) -> Judgements:
     """Of one run."""
     trace, diverged = done.trace, done.summary.outcome == "diverged"
+    claimed = beside(trace["tick"], done.claims, "tick", COVARIANCE)
     record = Stretch(
         robot_pose(trace)[np.newaxis],
         loop_estimates(trace)[np.newaxis],
-        _claimed(done)[np.newaxis],
+        np.stack(list(claimed.values()), axis=1)[np.newaxis],
         np.stack([trace["v"], trace["omega"]], axis=1)[np.newaxis],
     )
     last = np.array([trace["tick"][-1] if diverged else np.nan])
     return judgements(record, last, done.scenario.target, done.scenario.link.m)
-
-
-def _claimed(done: Run) -> Array:
-    """(ticks, 6), the upper triangle of the covariance; NaN where nothing is claimed."""
-    ticks, claims = done.trace["tick"], done.claims
-    there, rows = places(ticks, claims["tick"])
-    claimed = np.full((len(ticks), len(COVARIANCE)), np.nan)
-    claimed[rows] = np.stack([claims[name][there] for name in COVARIANCE], axis=1)
-    return claimed
 
 
 def joined(parts: list[Judgements]) -> Judgements:

@@ -31,7 +31,7 @@ from laglab_protocol import (
     Tick,
 )
 
-from .rig import TS, Rig, relay
+from .rig import TS, Rig, Robot, relay
 
 
 def fates_of(event: Event) -> RandomFates:
@@ -124,6 +124,18 @@ def test_several_ticks_in_one_piece_are_ticks_one_by_one() -> None:
     rig = Rig(relay(2, 1))
     rig.feed(rig.robot.tick() + rig.robot.tick() + rig.robot.tick())
     assert [told[-1] for told in rig.told] == [Tick(0, 0), Tick(1, 1), Tick(2, 1)]
+
+
+def test_a_robot_that_begins_again_brings_nothing_out_of_order() -> None:
+    """Its stamps are small again; the time of the run goes on."""
+    rig = Rig(relay(2, 1))
+    rig.run(40)
+    rig.robot = Robot()
+    rig.run(40)
+    assert [row.tick for row in rig.rows] == [*range(40), *range(20 - 1, 40 - 1)]
+    assert [row.time for row in rig.rows] == pytest.approx(np.arange(60) * TS)
+    report = rig.relay.audit.report()
+    assert (report.command.reordered, report.measurement.reordered) == (0, 0)
 
 
 def test_a_command_overtaken_on_the_link_is_stale() -> None:

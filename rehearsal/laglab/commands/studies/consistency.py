@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from laglab.commands.on_scenario import on_scenario
-from laglab.commands.options import PictureOption, WidthOption, WorkersOption, checked
+from laglab.commands.options import PictureOption, WidthOption, WorkersOption, checked, some_of
 from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, require
 from laglab.progress import tracked
@@ -30,12 +30,7 @@ def consistency(
     ] = 50,
     judged: Annotated[
         list[str] | None,
-        typer.Option(
-            "--judge",
-            metavar="NAME",
-            help=f"A filter to judge; may be repeated: {', '.join(COMPARABLE)}.",
-            autocompletion=lambda: COMPARABLE,
-        ),
+        some_of("--judge", "NAME", "A filter to judge", COMPARABLE),
     ] = None,
     workers: WorkersOption = 0,
     out: PictureOption = Path("consistency.png"),

@@ -4,8 +4,6 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from laglab.commands.on_scenario import on_scenario
 from laglab.commands.options import (
     PictureOption,
@@ -13,6 +11,7 @@ from laglab.commands.options import (
     WidthOption,
     WorkersOption,
     chosen,
+    some_of,
 )
 from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, require
@@ -40,22 +39,10 @@ def rivals(
     scenario: Scenario,
     seeds: SeedsOption = 20,
     on: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--on",
-            metavar="LINK",
-            help=f"Just this link; may be repeated: {', '.join(LINKS)}, or {OWN_LINK}.",
-            autocompletion=lambda: [*LINKS, OWN_LINK],
-        ),
+        list[str] | None, some_of("--on", "LINK", "Just this link", [*LINKS, OWN_LINK])
     ] = None,
     only: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--only",
-            metavar="STRATEGY",
-            help=f"Just this one; may be repeated: {', '.join(STRATEGIES)}.",
-            autocompletion=lambda: list(STRATEGIES),
-        ),
+        list[str] | None, some_of("--only", "STRATEGY", "Just this one", list(STRATEGIES))
     ] = None,
     workers: WorkersOption = 0,
     out: PictureOption = Path("rivals.png"),

@@ -58,11 +58,10 @@ def sweep(
     from laglab.studies.sweep.loading import load_study
     from laglab.studies.sweep.report import strangers_told, summary
     from laglab.studies.sweep.sweeping import work_off
-    from laglab.studies.sweep.work import check_size, work_left
+    from laglab.studies.sweep.work import check_study
 
     chosen = load_study(study, dict(map(assignment, told or [])), seeds)
-    check_size(chosen, limit)
-    work_left(chosen)
+    check_study(chosen, limit)
     folder = Folder.made(out or Path("studies") / chosen.name, chosen)
     for line in strangers_told(chosen, folder):
         say(line)

@@ -5,7 +5,14 @@ from typing import Annotated
 
 import typer
 
-from laglab.commands.options import PictureOption, SeedsOption, WorkersOption, checked, chosen
+from laglab.commands.options import (
+    PictureOption,
+    SeedsOption,
+    WorkersOption,
+    checked,
+    chosen,
+    some_of,
+)
 from laglab.extras import REHEARSING, require
 from laglab.progress import tracked
 from laglab.results.figures import picture_place, save
@@ -26,13 +33,7 @@ from laglab_control import ESTIMATORS
 def trust(
     seeds: SeedsOption = 20,
     only: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--only",
-            metavar="CONDITION",
-            help=f"Just this one; may be repeated: {', '.join(CONDITIONS)}.",
-            autocompletion=lambda: list(CONDITIONS),
-        ),
+        list[str] | None, some_of("--only", "CONDITION", "Just this one", list(CONDITIONS))
     ] = None,
     estimator: Annotated[
         str,

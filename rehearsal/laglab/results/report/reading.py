@@ -60,7 +60,7 @@ def _taken(run: Run, file: str, take: Callable[[Columns], Columns]) -> Iterator[
 
 def _note_due(run: Run, ticks: Trace) -> None:
     """When the command of each tick came into force; until the robot began again, if it did."""
-    last = ticks["time"][rising(ticks["tick"]) - 1]
+    last = ticks["time"][len(rising(ticks["tick"])) - 1]
     for piece in run.table_pieces(ARRIVALS_FILE):
         came = arrival_columns(piece, "command")
         there, at = places(ticks["tick"], came["tick"][came["time"] <= last])

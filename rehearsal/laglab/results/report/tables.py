@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.results.columns import Columns, places
+from laglab.results.columns import Columns, beside
 from laglab.results.numbers import (
     AXES,
     VARIANCES,
@@ -58,10 +58,9 @@ def tick_columns(
     columns |= _errors("", deviation(trace, loop_estimates(trace)))
     for name in shadows:
         columns |= _errors(f"_{name}", deviation(trace, shadow_estimates(trace, name)))
-    claimed = _claimed(trace["time"], claims)
-    columns |= {name: claimed[name] for name in COVARIANCES}
+    columns |= beside(trace["time"], claims, "time", COVARIANCES)
     for axis, variance in zip(AXES, VARIANCES, strict=True):
-        within = 2 * np.sqrt(np.maximum(claimed[variance], 0.0))
+        within = 2 * np.sqrt(np.maximum(columns[variance], 0.0))
         columns |= {f"{axis}_above": within, f"{axis}_below": -within}
     columns["due"] = np.full(rows, np.nan)
     return columns
@@ -69,15 +68,6 @@ def tick_columns(
 
 def _errors(suffix: str, off: Array) -> dict[str, Array]:
     return {f"{axis}_error{suffix}": off[:, i] for i, axis in enumerate(AXES)}
-
-
-def _claimed(times: Array, claims: Columns) -> dict[str, Array]:
-    """At these times; NaN where nothing was claimed."""
-    there, at = places(times, claims["time"])
-    columns = {name: np.full(len(times), np.nan) for name in COVARIANCES}
-    for name, column in columns.items():
-        column[at] = claims[name][there]
-    return columns
 
 
 def arrival_columns(arrivals: Columns, direction: str) -> Columns:

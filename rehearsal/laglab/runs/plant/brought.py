@@ -53,7 +53,7 @@ class Watched:
         """Its answer as a reading."""
         answer = called(self._name, self._one, "read")
         try:
-            reading = Reading(*(float(each * 1.0) for each in answer))  # a text is none
+            reading = Reading(*(float(each * 1.0) for each in answer))  # or it takes a text
         except (TypeError, ValueError):
             wanted = ", ".join(Reading._fields)
             raise self._wrong(f"must answer {wanted}, not {shown(answer)}") from None

@@ -15,7 +15,7 @@ from laglab.studies.sweep.folder import Folder
 from laglab.studies.sweep.loading import load_study
 from laglab.studies.sweep.result import StudyResult
 from laglab.studies.sweep.study import Study
-from laglab.studies.sweep.work import Work, check_size, work_left
+from laglab.studies.sweep.work import Work, check_study, work_left
 from laglab.studies.workers import Executor, Processes, as_done
 
 AHEAD = 512
@@ -32,8 +32,7 @@ def swept(
 ) -> StudyResult:
     """As `sweep` says."""
     chosen = study if isinstance(study, Study) else load_study(str(study))
-    check_size(chosen, limit)
-    work_left(chosen)
+    check_study(chosen, limit)
     if out is None:
         folder = Folder.made(Path(mkdtemp(prefix="laglab-")), chosen)
         result = StudyResult.passing(chosen, folder, chosen.origin)
