@@ -73,8 +73,16 @@ class Told(NamedTuple):
         return missing[0] - 1 if len(missing) > FEW else self.known
 
 
+class Sent(NamedTuple):
+    """A command on its way, and the sums of all inputs sent up to it."""
+
+    u: Vector
+    v: float
+    omega: float
+
+
 class Sums(NamedTuple):
-    """Of all inputs sent so far."""
+    """Of several inputs."""
 
     v: float
     omega: float
@@ -84,13 +92,11 @@ class Flight(NamedTuple):
     """All commands sent by now; the next tick is `tick`. Immutable."""
 
     tick: int
-    sent: Log[Vector]
+    sent: Log[Sent]
     """Up to u_{tick-1}."""
     command_delay: int
     """n as the echoes have it: their median, or what the station was told before the first."""
     told: Told
-    sums: Log[Sums]
-    """Of v and omega over `sent`, up to each."""
     in_flight: SlidingProduct[Vector, Way[float]]
     """u_{tick-n} ... u_{tick-1}: standing still for what was sent before tick 0."""
     ahead: Way[float]
@@ -109,7 +115,7 @@ def take_off(robot: Ways, command_delay: int, horizon: int = 0) -> Flight:
     """Before the first command; `horizon` ticks are planned with each."""
     nothing: SlidingProduct[Vector, Way[float]] = SlidingProduct(joined, NOWHERE)
     plans = no_plans(horizon) if horizon else None
-    flight = Flight(0, logged(), command_delay, Told(), logged(), nothing, NOWHERE, plans)
+    flight = Flight(0, logged(), command_delay, Told(), nothing, NOWHERE, plans)
     return _rebuilt(robot, flight)
 
 
@@ -120,13 +126,13 @@ def send(
 
     Where commands plan ahead, `plan` begins with the command itself.
     """
-    tick, sent, n, told, sums, in_flight, _, plans = flight
+    tick, sent, n, told, in_flight, _, plans = flight
     if plans:
         plans, u = plans.send(plan)
-    sent, sums = append(sent, u, MEMORY), append(sums, _added(sums, u), MEMORY)
+    sent = append(sent, _sent_after(sent, u), MEMORY)
     applied, in_flight = in_flight.push(u, robot.way(u)).pop()
     ahead = in_flight.product
-    return Flight(tick + 1, sent, n, told, sums, in_flight, ahead, plans), applied
+    return Flight(tick + 1, sent, n, told, in_flight, ahead, plans), applied
 
 
 def hear(
@@ -142,12 +148,12 @@ def hear(
     """
     if not (echoes or recalled):
         return flight, []
-    tick, sent, n, told, sums, in_flight, ahead, plans = flight
+    tick, sent, n, told, in_flight, ahead, plans = flight
     told, inputs = learned(told, tick, echoes, recalled)
     seen = told.usual_delay(otherwise=flight.usual_delay)
     if plans and seen >= n:  # the robot is that far on in its plans
         plans, seen = plans.late(seen - n), n
-    flight = Flight(tick, sent, seen, told, sums, in_flight, ahead, plans)
+    flight = Flight(tick, sent, seen, told, in_flight, ahead, plans)
     if seen == n:
         return flight, inputs
     flight = _rebuilt(robot, flight)
@@ -209,34 +215,39 @@ def _believed(flight: Flight, since: int) -> list[Applied]:
     return [Applied(tick, u[tick - since]) for tick in range(since, flight.tick)]
 
 
-def _added(sums: Log[Sums], u: Vector) -> Sums:
+def _sent_after(sent: Log[Sent], u: Vector) -> Sent:
     v, omega = u.tolist()
-    if not sums.length:
-        return Sums(v, omega)
-    before = sums.newest
-    return Sums(before.v + v, before.omega + omega)
+    if not sent.length:
+        return Sent(u, v, omega)
+    before = sent.newest
+    return Sent(u, before.v + v, before.omega + omega)
 
 
 def believed_at(flight: Flight, tick: int) -> Vector:
     """The input (2,) believed to be in force on [t_tick, t_{tick+1}), tick < `flight.tick`."""
     items, length = flight.sent
     index = length - (flight.tick - (tick - flight.command_delay))
-    return items[index] if 0 <= index < length else STAND
+    return items[index].u if 0 <= index < length else STAND
 
 
 def believed_sum(flight: Flight, since: int) -> Sums:
     """Of the inputs believed to have been in force from tick `since` to the present."""
-    items, length = flight.sums
-    last = length - 1 - flight.command_delay
-    first = last - (flight.tick - since)
-    newest = items[last] if last >= 0 else Sums(0.0, 0.0)
-    oldest = items[first] if first >= 0 else Sums(0.0, 0.0)
+    last = flight.sent.length - 1 - flight.command_delay
+    newest, oldest = _sum_up_to(flight, last), _sum_up_to(flight, last - (flight.tick - since))
     return Sums(newest.v - oldest.v, newest.omega - oldest.omega)
+
+
+def _sum_up_to(flight: Flight, index: int) -> Sums:
+    """Over all that was sent up to this place in `sent`; nothing before the first."""
+    if index < 0:
+        return Sums(0.0, 0.0)
+    _, v, omega = flight.sent.items[index]
+    return Sums(v, omega)
 
 
 def _sent_since(flight: Flight, tick: int) -> list[Vector]:
     """u_tick and all after it; standing still for what was sent before tick 0."""
     count = flight.tick - tick
     items, length = flight.sent
-    sent = items[max(length - count, 0) : length]
+    sent = [each.u for each in items[max(length - count, 0) : length]]
     return [STAND] * (count - len(sent)) + sent
