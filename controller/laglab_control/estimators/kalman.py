@@ -52,15 +52,24 @@ def normalised_squared(innovation: Innovation) -> float:
 
 def precision(S: Matrix) -> Triangle:
     """S^-1 of S (3, 3), in plain floats."""
+    found = _cofactors(S)
+    if found is None:
+        (xx, xy, xt), (_, yy, yt), (_, _, tt) = _pseudo_inverse(S).tolist()
+        return xx, xy, xt, yy, yt, tt
+    (xx, xy, xt, yy, yt, tt), determinant = found
+    scale = 1 / determinant
+    return xx * scale, xy * scale, xt * scale, yy * scale, yt * scale, tt * scale
+
+
+def _cofactors(S: Matrix) -> tuple[Triangle, float] | None:
+    """Those of S (3, 3), and its determinant; None where S counts as singular."""
     (xx, xy, xt), (_, yy, yt), (_, _, tt) = S.tolist()
     c_xx, c_xy, c_xt = yy * tt - yt * yt, xt * yt - xy * tt, xy * yt - xt * yy
     determinant = xx * c_xx + xy * c_xy + xt * c_xt
-    if not determinant > ILL_CONDITIONED * xx * yy * tt:
-        (xx, xy, xt), (_, yy, yt), (_, _, tt) = _pseudo_inverse(S).tolist()
-        return xx, xy, xt, yy, yt, tt
+    if not determinant > ILL_CONDITIONED * xx * yy * tt or min(xx, yy, tt) <= NO_DEVIATION**2:
+        return None
     c_yy, c_yt, c_tt = xx * tt - xt * xt, xy * xt - xx * yt, xx * yy - xy * xy
-    scale = 1 / determinant
-    return c_xx * scale, c_xy * scale, c_xt * scale, c_yy * scale, c_yt * scale, c_tt * scale
+    return (c_xx, c_xy, c_xt, c_yy, c_yt, c_tt), determinant
 
 
 def weighted(v: Sequence[float], weights: Triangle) -> float:
@@ -115,15 +124,12 @@ def gain(cross: Matrix, S: Matrix) -> Matrix:
 
 def _inverse_of_three(S: Matrix) -> Matrix:
     """By cofactors, in plain floats: the robot's case, four times as fast as the general one."""
-    (xx, xy, xt), (_, yy, yt), (_, _, tt) = S.tolist()
-    c_xx, c_xy, c_xt = yy * tt - yt * yt, xt * yt - xy * tt, xy * yt - xt * yy
-    determinant = xx * c_xx + xy * c_xy + xt * c_xt
-    if determinant <= ILL_CONDITIONED * xx * yy * tt or min(xx, yy, tt) <= NO_DEVIATION**2:
+    found = _cofactors(S)
+    if found is None:
         return _pseudo_inverse(S)
-    c_yy, c_yt, c_tt = xx * tt - xt * xt, xy * xt - xx * yt, xx * yy - xy * xy
-    cofactors = np.array((c_xx, c_xy, c_xt, c_xy, c_yy, c_yt, c_xt, c_yt, c_tt))
-    inverse: Matrix = (cofactors / determinant).reshape(3, 3)
-    return inverse
+    (xx, xy, xt, yy, yt, tt), determinant = found
+    inverse: Matrix = np.array((xx, xy, xt, xy, yy, yt, xt, yt, tt)) / determinant
+    return inverse.reshape(3, 3)
 
 
 def _inverse(S: Matrix) -> Matrix:
