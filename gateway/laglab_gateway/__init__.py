@@ -22,7 +22,7 @@ from laglab_gateway.link.log import (
     read_link_log,
     recorded_ticks,
 )
-from laglab_gateway.link.timeline import Direction, Event, first_tick
+from laglab_gateway.link.timeline import DIRECTIONS, Direction, Event, first_tick
 from laglab_gateway.loops.lockstep import serve_lockstep
 from laglab_gateway.loops.realtime import serve_realtime
 from laglab_gateway.loops.remote import serve_remote
@@ -67,6 +67,7 @@ from laglab_gateway.side import RobotSide
 __all__ = [
     "ARRIVALS_FILE",
     "CLAIMS_FILE",
+    "DIRECTIONS",
     "FOLLOWED",
     "IDEAL",
     "LINK_FILE",

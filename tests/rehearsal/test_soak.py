@@ -7,6 +7,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
+import laglab
 from laglab.command import main
 from laglab.soak import (
     EXPECTATIONS,
@@ -22,8 +23,9 @@ from laglab.soak import (
     play,
 )
 from laglab.soak.draw import SIGNALS
+from laglab.soak.files import faults_of
 from laglab.soak.system import marked
-from laglab_gateway import ROWS
+from laglab_gateway import ROWS, TRACE_FILE
 
 LOCKSTEP = {"pace": "lockstep", "duration": 15.0}
 REAL_TIME = {"pace": "realtime", "speed": 2.0, "duration": 4.0}
@@ -71,7 +73,7 @@ def test_strangers_change_nothing(tmp_path: Path) -> None:
     """And what is checked has been there: ticks, samples, strangers, the other trace."""
     played = play(CROWDED, tmp_path / "turn")
     assert failures(played) == {}
-    assert played.same_trace
+    assert played.trace_fault == ""
     assert played.datagrams > 20
     for part in played.parts:
         assert part.exit_code == 0
@@ -84,7 +86,7 @@ def test_strangers_change_nothing(tmp_path: Path) -> None:
 def test_nor_does_a_pause(tmp_path: Path) -> None:
     played = play(PAUSED, tmp_path / "turn")
     assert failures(played) == {}
-    assert played.same_trace
+    assert played.trace_fault == ""
     assert [part.signal for part in played.parts] == ["SIGSTOP", None]
 
 
@@ -102,7 +104,7 @@ def test_a_side_is_killed_and_started_again(tmp_path: Path) -> None:
 WELL = (Sample(100 << 20, 9),) * 20
 GATEWAY = Part("gateway", 0, "all is well", True, WELL, 120 << 20, verdict="converged", ticks=800)
 CONTROLLER = replace(GATEWAY, side="controller")
-AS_IT_SHOULD = Played(CALM, (GATEWAY, CONTROLLER), same_trace=True)
+AS_IT_SHOULD = Played(CALM, (GATEWAY, CONTROLLER), trace_fault="")
 
 
 def with_controller(controller: Part) -> Played:
@@ -119,7 +121,7 @@ WRONG = {
     ),
     "a run that nobody ends has a verdict": with_controller(replace(CONTROLLER, verdict="")),
     "files are whole and readable": with_controller(replace(CONTROLLER, faults=("torn",))),
-    "in lock-step the trace is the one inline": replace(AS_IT_SHOULD, same_trace=False),
+    "in lock-step the trace is the one inline": replace(AS_IT_SHOULD, trace_fault="another"),
     "memory stays below its bound": with_controller(replace(CONTROLLER, most_memory=1 << 30)),
     "nothing grows": with_controller(replace(CONTROLLER, ticks=10_000, samples=GROWING)),
     "descriptors stay below their bound": replace(AS_IT_SHOULD, descriptors=(9, 10)),
@@ -135,6 +137,23 @@ def test_all_is_as_it_should_be() -> None:
 @pytest.mark.parametrize("name", EXPECTATIONS)
 def test_each_expectation_can_fail(name: str) -> None:
     assert list(failures(WRONG[name])) == [name]
+
+
+def test_files_that_are_torn_or_out_of_order_are_told(tmp_path: Path) -> None:
+    laglab.run("lab-radio", {"duration": 1.0}, out=tmp_path / "run")
+    assert list(faults_of(tmp_path / "run", killed=False)) == []
+    trace = (tmp_path / "run" / TRACE_FILE).read_text()
+    again = "0,1.01," + trace.splitlines()[1].split(",", 2)[2] + "\n"
+    (tmp_path / "run" / TRACE_FILE).write_text(trace + again)  # a robot that has begun again
+    assert list(faults_of(tmp_path / "run", killed=False)) == []
+    (tmp_path / "run" / TRACE_FILE).write_text(trace + again.replace("1.01", "0.99"))
+    told = list(faults_of(tmp_path / "run", killed=False))
+    assert told == ["the times of its trace are not in order"]
+    for name in ("link.csv", "arrivals.csv", "claims.csv"):
+        whole = (tmp_path / "run" / name).read_bytes()
+        (tmp_path / "run" / name).write_bytes(whole[:-3])
+        assert f"{name}: its last line is torn" in faults_of(tmp_path / "run", killed=True)
+        (tmp_path / "run" / name).write_bytes(whole)
 
 
 def test_a_descriptor_that_is_not_a_files_is_told() -> None:

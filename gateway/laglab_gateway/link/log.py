@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from laglab_gateway.errors import TimelineError
 from laglab_gateway.link.fates import LONGEST_EXTRA, Fate, FateKind
-from laglab_gateway.link.timeline import Direction
+from laglab_gateway.link.timeline import DIRECTIONS, Direction
 
 
 class LinkRow(NamedTuple):
@@ -77,8 +77,8 @@ MOST_TICKS = 10_000_000
 """Of a log: a day at a hundred a second."""
 
 
-def read_link_log(path: Path, direction: Direction) -> list[LinkRow]:
-    """The rows of one direction. Raises TimelineError when the file is no link log, or tells what
+def read_link_log(path: Path) -> dict[Direction, list[LinkRow]]:
+    """The rows of each direction. Raises TimelineError when the file is no link log, or tells what
     no run does."""
     try:
         with path.open(newline="") as file:
@@ -90,10 +90,13 @@ def read_link_log(path: Path, direction: Direction) -> list[LinkRow]:
             read = [_row(*cells) for cells in lines]
     except (OSError, ValueError, TypeError, csv.Error) as error:
         raise TimelineError(f"{path} is not a readable link log: {error}") from error
-    own = [row for row in read if row.direction == direction]
-    if (problem := _unbelievable(own)) is not None:
+    rows = {each: [row for row in read if row.direction == each] for each in DIRECTIONS}
+    problem = (
+        _elsewhere(read) or _unbelievable(rows["command"]) or _unbelievable(rows["measurement"])
+    )
+    if problem:
         raise TimelineError(f"{path} is not a link log that can be believed: {problem}")
-    return own
+    return rows
 
 
 def _row(
@@ -102,6 +105,14 @@ def _row(
     return LinkRow(
         direction, int(tick), int(frame), int(copy), int(size), FateKind(fate), float(extra)
     )
+
+
+def _elsewhere(rows: Sequence[LinkRow]) -> str | None:
+    """Where a row says that a frame went, if that is neither way."""
+    for row in rows:
+        if row.direction not in DIRECTIONS:
+            return f"{_place(row)}: a direction is {' or '.join(DIRECTIONS)}"
+    return None
 
 
 def _unbelievable(rows: Sequence[LinkRow]) -> str | None:

@@ -10,6 +10,7 @@ from laglab_gateway.values import Duration, Seconds, checked, described
 ROUNDING = 1e-9
 
 Direction = Literal["command", "measurement"]
+DIRECTIONS: tuple[Direction, Direction] = ("command", "measurement")
 
 
 @checked

@@ -30,8 +30,9 @@ class Link(ABC):
     def send(self, data: bytes, to: Address | None = None) -> None:
         """Send `data` as one datagram, or as it comes in a stream: to the peer, or to a `sender`.
 
-        Dropped when nobody has been accepted yet (udpin). Raises FarEndGoneError or
-        FarEndStalledError where the link can tell.
+        Dropped when nobody has been accepted yet (udpin), or when the far end has read nothing for
+        long: whoever waits for an answer will find it silent. Raises FarEndGoneError where the link
+        can tell.
         """
 
     def offer(self, data: bytes, to: Address | None = None) -> None:

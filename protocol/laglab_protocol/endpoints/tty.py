@@ -40,7 +40,7 @@ class _Tty(Endpoint):
     def _hold(self, descriptor: int) -> None:
         self._descriptor = descriptor
         self._begun = b""
-        """The rest of what was offered, when there was room for its beginning only."""
+        """The rest of what there was room for the beginning of only: it goes first."""
         self._full_since: float | None = None
         self._line = select.poll()
         self._line.register(descriptor, select.POLLHUP)
@@ -65,25 +65,48 @@ class _Tty(Endpoint):
 
     def send(self, data: bytes, to: Address | None = None) -> None:
         del to  # there is only one far end
-        data, self._begun = self._begun + data, b""
-        while data:
-            rest = self._write(data)
-            if rest == data and not writable(self._descriptor, STALL_TIMEOUT):
-                raise self._stalled(len(data))
-            data = rest
+        while not self._begin(data):
+            if not self._wait():
+                return  # nobody reads: as on any wire, it is lost
+        while not self._go_on():
+            if not self._wait():
+                return
 
     def offer(self, data: bytes, to: Address | None = None) -> None:
         del to
+        if not self._begin(data) and self._stalled():
+            raise FarEndStalledError(
+                f"{self.name}: the far end has stopped reading, {len(data)} bytes cannot be sent: "
+                "see whether the program there still runs"
+            )
+
+    def _begin(self, data: bytes) -> bool:
+        """Whether there was room for at least some of it."""
+        if not self._go_on():
+            return False
+        rest = self._write(data)
+        if data and rest == data:
+            return False
+        self._begun, self._full_since = rest, None
+        return True
+
+    def _go_on(self) -> bool:
+        """Whether all of what was begun is written."""
         waiting, self._begun = self._begun, self._write(self._begun)
-        rest = data if self._begun else self._write(data)
-        if rest != data:
-            self._begun, self._full_since = rest, None
-        elif len(self._begun) < len(waiting):
+        if len(self._begun) < len(waiting):
             self._full_since = None  # it reads, if slowly
-        elif self._full_since is None:
-            self._full_since = monotonic()
-        elif monotonic() - self._full_since > STALL_TIMEOUT:
-            raise self._stalled(len(data))
+        return not self._begun
+
+    def _wait(self) -> bool:
+        """For room; False when there has been none for STALL_TIMEOUT, and then at once."""
+        return not self._stalled() and writable(self._descriptor, STALL_TIMEOUT)
+
+    def _stalled(self) -> bool:
+        """Of a queue that is full: whether it has been that for STALL_TIMEOUT."""
+        now = monotonic()
+        if self._full_since is None:
+            self._full_since = now
+        return now - self._full_since > STALL_TIMEOUT
 
     def _write(self, data: bytes) -> bytes:
         """Writes what there is room for; returns the rest."""
@@ -93,12 +116,6 @@ class _Tty(Endpoint):
             return data
         except OSError as error:
             raise self._gone(error.strerror) from error
-
-    def _stalled(self, waiting: int) -> FarEndStalledError:
-        return FarEndStalledError(
-            f"{self.name}: the far end has stopped reading, {waiting} bytes cannot be sent: "
-            "see whether the program there still runs"
-        )
 
     def _gone(self, reason: str | None) -> FarEndGoneError:
         return FarEndGoneError(

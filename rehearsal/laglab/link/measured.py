@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from laglab.files import write_whole
 from laglab.link.errors import LinkFileError
 from laglab_gateway import (
+    DIRECTIONS,
     LONGEST_EXTRA,
     MOST_TICKS,
     FateKind,
@@ -31,7 +32,6 @@ Flags = NDArray[np.bool_]
 
 CAME = (FateKind.DELIVERED, FateKind.LATE)
 """Fates of frames that came: one that is too late for play-out came all the same."""
-DIRECTIONS: tuple[Direction, Direction] = ("command", "measurement")
 
 
 @dataclass(frozen=True)
@@ -121,12 +121,12 @@ def read_measured(path: Path, interval: float, fixed: tuple[int, int] = (0, 0)) 
     several frames or copies in one tick the first that came counts. Raises LinkFileError.
     """
     try:
-        command, measurement = (
-            _flow(read_link_log(path, name), interval, delay)
-            for name, delay in zip(DIRECTIONS, fixed, strict=True)
-        )
+        rows = read_link_log(path)
     except TimelineError as error:
         raise LinkFileError(str(error)) from error
+    command, measurement = (
+        _flow(rows[name], interval, delay) for name, delay in zip(DIRECTIONS, fixed, strict=True)
+    )
     if not (len(command.delay) or len(measurement.delay)):
         raise LinkFileError(f"{path}: no frames in it: an ideal link leaves no trace")
     return MeasuredLink(command, measurement, interval)

@@ -11,14 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab.results.columns import Columns
-from laglab_gateway import ARRIVALS_FILE, FOLLOWED, LINK_FILE, FateKind
+from laglab_gateway import ARRIVALS_FILE, DIRECTIONS, FOLLOWED, LINK_FILE, Direction, FateKind
 
 if TYPE_CHECKING:
     from laglab.results.run import Run
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-DIRECTIONS = ("command", "measurement")
 SILENT = 20
 """[ticks] When nothing gets through for so long it is an outage, whatever the record calls it."""
 
@@ -49,7 +48,7 @@ class DirectionView:
 class LinkView(NamedTuple):
     """Both directions, and what became of the robot and of the estimate."""
 
-    directions: Mapping[str, DirectionView]
+    directions: Mapping[Direction, DirectionView]
     stopped: list[Span]
     """When the robot stopped by itself, until it followed a command again."""
     emergencies: list[float]
@@ -118,11 +117,11 @@ class _Arrivals:
             if again < len(followed):
                 self.stops[at] = min(until, float(followed[again]))
 
-    def delays(self, direction: str) -> Array:
+    def delays(self, direction: Direction) -> Array:
         """Times and delays."""
         return np.concatenate([np.empty((2, 0)), *self._came[direction]], axis=1)
 
-    def refused(self, direction: str) -> dict[str, Array]:
+    def refused(self, direction: Direction) -> dict[str, Array]:
         """Times [s], by reason; only commands are refused."""
         there = self._refused if direction == "command" else {}
         return {why: np.concatenate(times) for why, times in sorted(there.items())}
@@ -149,7 +148,7 @@ class _Losses:
                 times = ticks[fates == cause][:: self._stride] * self._sample_time
                 self._lost.setdefault((name, cause), []).append(times)
 
-    def lost(self, direction: str) -> dict[str, Array]:
+    def lost(self, direction: Direction) -> dict[str, Array]:
         """Times, by cause."""
         return {
             cause: np.concatenate(times)
@@ -157,7 +156,7 @@ class _Losses:
             if name == direction
         }
 
-    def outages(self, direction: str) -> list[Span]:
+    def outages(self, direction: Direction) -> list[Span]:
         """When nothing got through."""
         return self._silences[direction].spans()
 

@@ -15,6 +15,7 @@ from laglab.live import Controls
 from laglab.runs.plant import OpenPlant, open_plant
 from laglab.scenario import Scenario
 from laglab_gateway import (
+    DIRECTIONS,
     IDEAL,
     Direction,
     Fates,
@@ -140,15 +141,12 @@ def make_gateway(
     return Gateway(opened.plant, gateway_config(scenario), link_fates(scenario), services, sender)
 
 
-DIRECTIONS: tuple[Direction, ...] = ("command", "measurement")
-
-
 def link_fates(scenario: Scenario) -> dict[Direction, Fates]:
     """What decides over the frames of each direction that is not ideal, seeded by the scenario."""
     if (log := scenario.link.replay) is not None:
-        rows = {direction: read_link_log(log, direction) for direction in DIRECTIONS}
+        rows = read_link_log(log)
         ticks = recorded_ticks(*rows.values())
-        return {direction: RecordedFates(rows[direction], ticks) for direction in DIRECTIONS}
+        return {direction: RecordedFates(told, ticks) for direction, told in rows.items()}
     fates: dict[Direction, Fates] = {}
     for number, direction in enumerate(DIRECTIONS):
         impairments = getattr(scenario.link, direction)
@@ -163,7 +161,7 @@ def wrapped_replay(scenario: Scenario) -> str | None:
     """Says in a line that a run is longer than what it replays; None where it is not."""
     if (log := scenario.link.replay) is None:
         return None
-    recorded = len(recorded_ticks(*(read_link_log(log, direction) for direction in DIRECTIONS)))
+    recorded = len(recorded_ticks(*read_link_log(log).values()))
     ticks = math.inf if scenario.last_tick is None else scenario.last_tick + 1
     if not 0 < recorded < ticks:
         return None

@@ -81,8 +81,8 @@ def files_are_whole(played: Played) -> Iterator[str]:
 
 def same_trace_as_inline(played: Played) -> Iterator[str]:
     """In lock-step; strangers change nothing."""
-    if played.same_trace is False:
-        yield "trace.csv is not the one of the same run inline"
+    if played.trace_fault:
+        yield played.trace_fault
 
 
 def memory_has_a_bound(played: Played) -> Iterator[str]:

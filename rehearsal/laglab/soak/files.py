@@ -8,7 +8,7 @@ from laglab.results.place import OURS
 from laglab.results.run import open_run
 from laglab.results.shadows import shadow_file
 from laglab_control import ESTIMATORS
-from laglab_gateway import LINK_FILE, TIMING_FILE, TLOG_FILE, TRACE_FILE, GatewayError
+from laglab_gateway import ROWS, TLOG_FILE, TRACE_FILE, GatewayError
 from laglab_protocol import TlogError, read_tlog
 
 TLOG_STAMP = 8
@@ -23,7 +23,7 @@ def faults_of(folder: Path, killed: bool) -> Iterator[str]:
 
 
 def _torn(folder: Path) -> Iterator[str]:
-    for name in (TRACE_FILE, LINK_FILE, TIMING_FILE):
+    for name in (TRACE_FILE, *ROWS):
         path = folder / name
         if path.exists() and (fault := _torn_table(path)):
             yield f"{name}: {fault}"
@@ -51,9 +51,9 @@ def _torn_table(path: Path) -> str:
 def _unreadable(folder: Path) -> Iterator[str]:
     try:
         run = open_run(folder)
-        ticks, _, _ = run.trace["tick"], run.link, run.timing
-        if len(ticks) and (ticks[1:] <= ticks[:-1]).any():
-            yield "the ticks of its trace are not in order"
+        times, *_ = run.trace["time"], run.link, run.arrivals, run.claims, run.timing
+        if (times[1:] <= times[:-1]).any():  # a robot that begins again counts its ticks anew
+            yield "the times of its trace are not in order"
     except (LaglabError, GatewayError) as error:
         yield f"cannot be read: {error}"
 

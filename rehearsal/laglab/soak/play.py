@@ -12,7 +12,7 @@ from time import monotonic, sleep
 
 from laglab.soak.played import Played
 from laglab.soak.process import Process
-from laglab.soak.reference import inline_trace
+from laglab.soak.reference import fault_of_trace
 from laglab.soak.strangers import LINE_SHARE, Speaking, speaking
 from laglab.soak.system import PROCESSES, marked
 from laglab.soak.turn import Side, Turn
@@ -51,7 +51,7 @@ def play(turn: Turn, folder: Path) -> Played:
     return Played(
         turn=turn,
         parts=parts,
-        same_trace=_same_trace(folder) if turn.lockstep and turn.goes_on else None,
+        trace_fault=_trace_fault(folder) if turn.lockstep and turn.goes_on else None,
         left=links,
         running=tuple(running),
         descriptors=(before, _descriptors()),
@@ -68,11 +68,9 @@ def _rounded_up(mark: str) -> list[int]:
     return running
 
 
-def _same_trace(folder: Path) -> bool:
+def _trace_fault(folder: Path) -> str:
     trace = folder / "gateway" / TRACE_FILE
-    if not trace.exists():
-        return False
-    return trace.read_bytes() == inline_trace(folder / SCENARIO, folder / "inline")
+    return fault_of_trace(trace, folder / SCENARIO, folder / "inline")
 
 
 def _descriptors() -> int:

@@ -45,8 +45,8 @@ class Played:
 
     turn: Turn
     parts: tuple[Part, ...]
-    same_trace: bool | None = None
-    """As inline; None: that was not asked."""
+    trace_fault: str | None = None
+    """In what `trace.csv` is not the one inline, nothing if it is; None: that was not asked."""
     left: tuple[str, ...] = ()
     """Links of ports in the turn's folder."""
     running: tuple[int, ...] = ()

@@ -7,15 +7,22 @@ from pathlib import Path
 from laglab_gateway import TRACE_FILE
 
 
-def inline_trace(scenario: Path, folder: Path) -> bytes:
-    """Its `trace.csv`; empty when there is none."""
+def fault_of_trace(trace: Path, scenario: Path, folder: Path) -> str:
+    """In what a run's `trace.csv` is not the one inline, which is made in `folder`; empty when it
+    is."""
+    if not trace.exists():
+        return f"there is no {trace.name}"
     options = ("--transport", "inline", "--set", "estimator.compare=[]", "--out", str(folder))
-    subprocess.run(
+    done = subprocess.run(
         [sys.executable, "-P", "-m", "laglab", "run", str(scenario), *options],
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
         check=False,
     )
-    trace = folder / TRACE_FILE
-    return trace.read_bytes() if trace.exists() else b""
+    inline = folder / TRACE_FILE
+    if not inline.exists():
+        return f"the same run inline left none, and ended with {done.returncode}: {done.stderr}"
+    same = trace.read_bytes() == inline.read_bytes()
+    return "" if same else "trace.csv is not the one of the same run inline"

@@ -160,12 +160,12 @@ def test_a_log_replays_to_the_same_link_on_another_run(tmp_path: Path) -> None:
     log = line.take_log()
     recorder.link(log)
     recorder.close()
-    rows = read_link_log(tmp_path / "link.csv", "command")
+    rows = read_link_log(tmp_path / "link.csv")["command"]
     assert rows == log
     again: Channel[Command] = Channel("command", 4, TS, RecordedFates(rows))
     assert cross(again, 300) == first
     assert again.take_log() == log
-    assert read_link_log(tmp_path / "link.csv", "measurement") == []
+    assert read_link_log(tmp_path / "link.csv")["measurement"] == []
 
 
 def test_frames_that_enter_in_one_tick_are_replayed_each_as_its_own() -> None:

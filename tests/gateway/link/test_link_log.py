@@ -15,7 +15,7 @@ def test_what_is_no_link_log_is_refused_by_name(tmp_path: Path, text: str) -> No
     path = tmp_path / "other.csv"
     path.write_text(text)
     with pytest.raises(TimelineError, match=r"other\.csv"):
-        read_link_log(path, "command")
+        read_link_log(path)
 
 
 UNBELIEVABLE = {
@@ -36,7 +36,14 @@ def test_what_no_run_records_is_refused(tmp_path: Path, row: str) -> None:
     path = tmp_path / "link.csv"
     path.write_text(",".join(LinkRow._fields) + f"\ncommand,{row}\n")
     with pytest.raises(TimelineError, match=UNBELIEVABLE[row]):
-        read_link_log(path, "command")
+        read_link_log(path)
+
+
+def test_a_frame_goes_one_of_two_ways(tmp_path: Path) -> None:
+    path = tmp_path / "link.csv"
+    path.write_text(",".join(LinkRow._fields) + "\nupwards,0,0,0,35,delivered,0\n")
+    with pytest.raises(TimelineError, match=r"upwards.* a direction is command or measurement"):
+        read_link_log(path)
 
 
 TOLD = (("delivered", 0.01), ("lost", 0.0), ("delivered", 0.03))

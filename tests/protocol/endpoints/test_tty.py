@@ -143,14 +143,28 @@ def test_a_port_that_does_not_come_back_writes_nowhere(stack: ExitStack, tmp_pat
     assert [path.read_bytes() for path in others] == [b"", b"", b""]
 
 
-def test_a_reader_that_stopped_is_noticed(
+def test_what_nobody_reads_is_lost_and_holds_nobody_up(
     stack: ExitStack, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """As on any wire; who reads again finds whole frames behind the one that was cut."""
     monkeypatch.setattr(tty, "STALL_TIMEOUT", 0.05)
-    robot = stack.enter_context(open_endpoint(f"pty://{tmp_path / 'robot'}"))
-
+    robot, station = serial_pair(stack, tmp_path / "robot")
+    frames = [bytes([number]) * 1000 for number in range(100)]
+    started = time.monotonic()
+    for frame in frames:
+        robot.send(frame)
+    assert 0.04 < time.monotonic() - started < 1.0, "it waits once"
     with pytest.raises(FarEndStalledError, match="stopped reading"):
-        robot.send(bytes(1_000_000))
+        robot.offer(b"anybody?")
+
+    while station.receive(0.05):
+        pass
+    robot.send(b"again")
+    heard = b""
+    while data := station.receive(0.05):
+        heard += data
+    assert heard.endswith(b"again")
+    assert len(set(heard.removesuffix(b"again"))) <= 1, "the rest of the frame that was cut"
 
 
 def test_a_pty_waits_as_long_as_told(stack: ExitStack, tmp_path: Path) -> None:

@@ -121,7 +121,7 @@ def test_a_longer_run_goes_through_a_replay_again_and_says_so(
     options = ("--timeline", "link.csv", "--duration", "2", "--transport", "inline")
     told = ended("run", "lab", *options).err
     assert "link.csv holds 0.5 s of a link: the run goes through it 4.02 times" in told
-    rows = read_link_log(tmp_path / "runs/lab/link.csv", "command")
+    rows = read_link_log(tmp_path / "runs/lab/link.csv")["command"]
     fates = [row.fate for row in rows if row.frame == 0]
     assert fates == [("delivered", "lost", "lost")[tick % 50 % 3] for tick in range(201)]
     short = (*options[:3], "0.3", "--transport", "inline", "--force")

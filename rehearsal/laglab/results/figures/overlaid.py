@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,8 +14,8 @@ from laglab.results.figures.plane import draw_headings, fit, mark_ends
 from laglab.results.figures.shown import Clock, Shown, clock, shown
 from laglab.results.figures.strip import configured
 from laglab.results.figures.style import INCHES, Width, legend, line, printed, sheet
-from laglab.results.link_view import DIRECTIONS
 from laglab.scenario import Scenario
+from laglab_gateway import DIRECTIONS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -102,9 +102,9 @@ def _extremes(values: NDArray[np.float64]) -> tuple[float, float]:
     return float(values.min()), float(values.max())
 
 
-FROM_NOTHING = {"error": 1e-6, **dict.fromkeys(DIRECTIONS, 1.0)}
+FROM_NOTHING: Mapping[str, float] = {"error": 1e-6, **dict.fromkeys(DIRECTIONS, 1.0)}
 """What is never below 0, and how much is shown of it at least."""
-LABELS = {
+LABELS: Mapping[str, str] = {
     "error": "position\nerror [m]",
     **SPEEDS,
     **{direction: f"{direction}\ndelay [ticks]" for direction in DIRECTIONS},

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from laglab.results.figures.shown import Shown
+    from laglab_gateway import Direction
 
 CAUSES = {
     "lost": ("x", RED),
@@ -41,7 +42,7 @@ LANE = 0.16
 """The height of a lane of marks, as a share of that of the delays."""
 
 
-def draw_delays(axes: Axes, shown: Shown, direction: str, bottom: bool = True) -> None:
+def draw_delays(axes: Axes, shown: Shown, direction: Direction, bottom: bool = True) -> None:
     """A dot for each message that came, as high as its delay; above them a lane for each cause
     for which others did not."""
     view = shown.link.directions[direction]
@@ -72,7 +73,7 @@ def draw_delays(axes: Axes, shown: Shown, direction: str, bottom: bool = True) -
     axes.set_ylabel(f"{direction}\ndelay [ticks]")
 
 
-def configured(shown: Shown, direction: str) -> int:
+def configured(shown: Shown, direction: Direction) -> int:
     """The delay that the link was told to have [ticks]."""
     link = shown.scenario.link
     return link.command_delay if direction == "command" else link.measurement_delay

@@ -12,8 +12,8 @@ from laglab.results.figures.plane import draw_path
 from laglab.results.figures.shown import Shown, shown
 from laglab.results.figures.strip import draw_delays
 from laglab.results.figures.style import INCHES, Width, legend, printed, sheet
-from laglab.results.link_view import DIRECTIONS
 from laglab.scenario import Scenario
+from laglab_gateway import DIRECTIONS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -104,13 +104,13 @@ def _continues(rows: Sequence[Row], name: str) -> bool:
 
 
 def _draw(axes: Axes, told: Shown, name: str, bottom: bool) -> None:
+    if name in DIRECTIONS:
+        draw_delays(axes, told, name, bottom)
+        return
     kind, _, component = name.rpartition(" ")
     match kind or name:
         case "path":
             draw_path(axes, told)
-            return
-        case "command" | "measurement":
-            draw_delays(axes, told, name, bottom)
             return
         case "v" | "omega":
             draw_speed(axes, told, name)

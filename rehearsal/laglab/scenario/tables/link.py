@@ -16,10 +16,10 @@ Delay = Annotated[Ticks, Field(lt=UNKNOWN_DELAY)]
 
 def _readable(log: Path) -> Path:
     try:
-        told = read_link_log(log, "command"), read_link_log(log, "measurement")
+        told = read_link_log(log)
     except TimelineError as error:
         raise ValueError(str(error)) from error
-    if not any(told):
+    if not any(told.values()):
         raise ValueError(f"{log} tells of no frame: an ideal link leaves no trace, nor needs one")
     return log.resolve()
 
