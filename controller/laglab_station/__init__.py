@@ -1,6 +1,7 @@
 """The remote station: messages in, messages out, and its loop."""
 
 from laglab_control import StationConfig
+from laglab_station.driver import MakeController
 from laglab_station.errors import RobotSilentError, StationError
 from laglab_station.loop import Onlooker, run_station
 from laglab_station.report import StationReport
@@ -9,6 +10,7 @@ from laglab_station.shadow import ShadowRow, shadow
 from laglab_station.station import Station
 
 __all__ = [
+    "MakeController",
     "Onlooker",
     "RobotSilentError",
     "SessionTick",

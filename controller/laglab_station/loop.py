@@ -195,7 +195,7 @@ class _Loop:
     def _reopen(self, error: FarEndGoneError) -> None:
         self._station.warn("gone", f"{error}; waiting for it to come back")
         self._look_around()
-        deadline = self._heard + self._silence_timeout
+        deadline = monotonic() + self._silence_timeout
         while monotonic() < deadline:
             sleep(HEARTBEAT_PERIOD)
             try:

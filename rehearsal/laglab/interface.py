@@ -14,12 +14,13 @@ from laglab.results.place import place
 from laglab.results.run import Kept, Run
 from laglab.results.shadows import read_shadow, shadow_file
 from laglab.runs.ending import Ending
-from laglab.runs.rehearse import MakeController, Transport, rehearse_inline
+from laglab.runs.rehearse import Transport, rehearse_inline
 from laglab.runs.whole import run_into
 from laglab.scenario import Scenario, load
 from laglab_control import Controller
 from laglab_gateway import ROWS, MemoryRecorder
 from laglab_protocol import EndReason
+from laglab_station import MakeController
 
 
 def run(

@@ -76,6 +76,22 @@ def test_it_makes_itself_known_answers_and_ends(link):
     assert [message.tick for message in heard if isinstance(message, Command)] == [0, 1]
 
 
+def test_a_port_that_breaks_while_a_robot_is_waited_for_gets_its_time_to_come_back(tmp_path):
+    """However long that wait was."""
+    path, results = tmp_path / "robot", []
+    with open_endpoint(f"pty://{path}") as robot:
+        station = open_endpoint(f"serial://{path}:57600")
+        options = {"silence_timeout": 0.5}
+        thread = threading.Thread(target=run, args=(station, results), kwargs=options)
+        thread.start()
+        time.sleep(0.8)
+    with station, open_endpoint(f"pty://{path}") as robot:
+        time.sleep(0.2)
+        drive(robot, Tick(0, 0), End(0, EndReason.COMPLETED))
+        thread.join(5)
+    assert results == [End(0, EndReason.COMPLETED)]
+
+
 def test_a_warning_is_passed_on_once(link):
     robot, endpoint = link
     config = StationConfig(estimator="popf", initial_covariance=np.eye(3))

@@ -17,7 +17,9 @@ from laglab_gateway import (
     GatewayConfig,
     Impairments,
     RandomFates,
+    Recorder,
     Surroundings,
+    TraceError,
     TraceRow,
     read_link_log,
     serve_lockstep,
@@ -31,7 +33,9 @@ from laglab_protocol import (
     STATION_HEARTBEAT,
     STATION_SYSTEM,
     Command,
+    End,
     EndpointError,
+    EndReason,
     Link,
     Listener,
     Receiver,
@@ -51,12 +55,15 @@ class BreakingLink(Link):
     def __init__(self) -> None:
         self._sender, self._receiver = Sender(STATION_SYSTEM, STATION_COMPONENT), Receiver()
         self._waiting = self._sender.frame(STATION_HEARTBEAT)
+        self.ended: list[EndReason] = []
 
     def fileno(self) -> int:
         return -1
 
     def send(self, data: bytes, _: object = None) -> None:
         for frame in self._receiver.receive(data):
+            if isinstance(frame.message, End):
+                self.ended.append(frame.message.reason)
             if isinstance(frame.message, Tick):
                 tick = frame.message.tick
                 if tick == BREAKS_AT:
@@ -86,6 +93,23 @@ def test_a_link_that_breaks_leaves_the_trace_and_what_the_link_did_up_to_the_sam
     assert set(read_trace(tmp_path / "trace.csv")["tick"]) == whole
     for rows in read_link_log(tmp_path / "link.csv").values():
         assert {row.tick for row in rows} == whole
+
+
+class FullDisk(Recorder):
+    """No room for the tick before the link breaks."""
+
+    def row(self, row: TraceRow) -> None:
+        if row.tick == BREAKS_AT - 1:
+            raise TraceError("cannot record trace.csv: no room")
+
+
+def test_a_recorder_that_fails_too_hides_no_cause_and_leaves_nobody_untold() -> None:
+    link, parameters = BreakingLink(), RobotParameters()
+    with Robot.open(3, parameters) as robot:
+        gateway = Gateway(FmuPlant(robot, parameters), GatewayConfig(0, 0, 100, 0.01))
+        with pytest.raises(EndpointError, match="the cable is out"):
+            serve_lockstep(gateway, Surroundings(Listener(link, Receiver()), FullDisk()))
+    assert set(link.ended) == {EndReason.FAILED}
 
 
 @pytest.mark.parametrize(("pause", "written"), [(0.0, [1, 2, 3, 4]), (3600.0, [1, 1, 1, 4])])

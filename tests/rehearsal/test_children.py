@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import tempfile
+from functools import partial
 from pathlib import Path
 from queue import Queue
 
@@ -10,8 +11,9 @@ import pytest
 
 from laglab.errors import RunError
 from laglab.runs.processes.child import Child, Letter, _read
-from laglab.runs.processes.reports import Ended
+from laglab.runs.processes.reports import Computed, Ended
 from laglab.studies.workers import shared_out
+from laglab_gateway import StationSilentError
 
 DYING = """\
 import os, sys
@@ -19,6 +21,27 @@ sys.stdout.write('["Computed", "half of an')
 sys.stdout.flush()
 os.kill(os.getpid(), {signal})
 """
+
+
+def test_a_line_of_somebody_elses_is_passed_over() -> None:
+    """What Python does at its start may print."""
+    program = """print('hello'); print('{"type": "Computed", "answer": ""}')"""
+    command = [sys.executable, "-c", program]
+    inbox: Queue[Letter] = Queue()
+    with subprocess.Popen(command, stdout=subprocess.PIPE) as process:
+        _read(Child("worker", process), inbox)
+    reports = [inbox.get_nowait().report for _ in range(2)]
+    assert reports == [
+        Computed(b""),
+        Ended("the worker process ended with exit code 0 and no word"),
+    ]
+    assert inbox.empty()
+
+
+def test_an_answer_that_cannot_be_read_is_told() -> None:
+    """Pickle refuses what needs more than one argument to be made."""
+    with pytest.raises(RunError, match="answer of a job cannot be read: TypeError"):
+        list(shared_out(partial(StationSilentError, None), [1.0, 2.0], 1))
 
 
 @pytest.mark.parametrize(("signal", "called"), [(9, "SIGKILL"), (40, "signal 40")])

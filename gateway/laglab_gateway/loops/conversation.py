@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import NamedTuple
 
-from laglab_gateway.errors import StationSilentError
+from laglab_gateway.errors import StationSilentError, TraceError
 from laglab_gateway.link.log import LinkRow
 from laglab_gateway.loops.datagrams import datagrams
 from laglab_gateway.loops.surroundings import Surroundings
@@ -79,7 +79,8 @@ class Conversation:
         except KeyboardInterrupt:
             self._gateway.stop(EndReason.INTERRUPTED)
         except BaseException:
-            self._write_down()
+            with suppress(TraceError):
+                self._write_down()
             self._recorder = Recorder()  # it may be what failed
             with suppress(EndpointError):
                 self._say_goodbye()

@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import re
 import select
 import stat
 import tty
@@ -23,6 +24,8 @@ READ_AT_MOST = 1024
 """Bytes at a time: whoever reads looks at its clock in between."""
 NOWHERE = -1
 """The descriptor of a port that is closed: its number goes to the next file that is opened."""
+PSEUDO = re.compile(r"/dev/(pts/|ttys)\d+")
+"""The names of pseudo-terminals, on Linux and on macOS."""
 STALL_TIMEOUT = 1.0
 """Seconds that a full queue may stay full before the far end counts as stalled."""
 
@@ -138,7 +141,7 @@ class SerialPort(_Tty):
         self._port.close()
         self._descriptor = NOWHERE
         plug = _plug(self._device)
-        if plug == self._plug and os.path.realpath(self._device).startswith("/dev/pts/"):
+        if plug == self._plug and PSEUDO.fullmatch(os.path.realpath(self._device)):
             raise NoSuchPortError(f"{self.name}: nobody has made {self._device} again")
         self._port = _open_port(self._device, self._baud)
         self._plug = plug
@@ -146,6 +149,7 @@ class SerialPort(_Tty):
 
     def close(self) -> None:
         self._port.close()
+        self._descriptor = NOWHERE
 
 
 def _plug(device: str) -> tuple[int, int] | None:
@@ -205,13 +209,14 @@ class Pty(_Tty):
         self._link = None
         os.close(self._descriptor)
         os.close(self._slave)
+        self._descriptor = NOWHERE
 
 
 def _make_way(link: Path) -> None:
     """Remove a link that an earlier run left behind; leave anything else alone."""
-    if link.is_symlink():
+    if link.is_symlink() and PSEUDO.fullmatch(str(link.readlink())):
         link.unlink()
-    elif link.exists():
+    elif link.exists() or link.is_symlink():
         raise PortBusyError(f"pty://{link}: a file is there already: choose another path")
 
 

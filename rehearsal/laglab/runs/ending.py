@@ -1,6 +1,7 @@
 """How the sides of a run ended."""
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 
 from laglab_gateway import LinkReport, Outcome, TimingReport
 from laglab_protocol import EndReason
@@ -32,6 +33,10 @@ class Ending:
     timing: TimingReport | None = None
     station: StationReport | None = None
     warnings: tuple[str, ...] = ()
+
+    def warned(self, texts: Iterable[str]) -> "Ending":
+        """With these warnings too: what both sides warn of stands there once."""
+        return replace(self, warnings=tuple(dict.fromkeys((*self.warnings, *texts))))
 
     @property
     def emergency_stop(self) -> bool:

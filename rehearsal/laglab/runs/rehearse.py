@@ -1,7 +1,7 @@
 """Starting both sides, following them, and collecting what they left."""
 
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
@@ -31,12 +31,12 @@ from laglab.runs.robot_side import Setup, open_robot
 from laglab.runs.station_side import make_station
 from laglab.runs.waiting import START
 from laglab.scenario import Scenario
-from laglab_control import Controller, StationConfig
+from laglab_control import Controller
 from laglab_gateway import Outcome, Recorder, Surroundings
 from laglab_protocol import STATION_COMPONENT, STATION_SYSTEM, Codec, EndReason, Listener
+from laglab_station import MakeController, Station, StationReport
 
 Transport = Literal["inline", "udp", "serial"]
-MakeController = Callable[[StationConfig], Controller]
 
 NOTICE_SECONDS = 1.0
 """[s] What a gateway needs, besides the silence timeout, to say that its station is silent."""
@@ -60,6 +60,7 @@ def rehearse_inline(
     recorder, now = watched(recorder, scenario, setup.plant)
     clock = LoopClock(lambda tick: progress(tick, now()))
     warnings: list[str] = []
+    station: Station | None = None
     try:
         with (
             open_robot(scenario, setup) as robot,
@@ -74,17 +75,15 @@ def rehearse_inline(
                 served = robot.serve(around)
     except SIDE_ERRORS as error:
         begun = clock.seconds > 0 or isinstance(error, CUT_SHORT)
-        return Ending(problem=str(error), begun=begun, loop_seconds=clock.seconds)
-    report = station.report()
-    return Ending(
-        outcome=served.outcome,
-        problem=link.problem,
-        loop_seconds=clock.seconds,
-        link=served.link,
-        timing=served.timing,
-        station=report,
-        warnings=(*warnings, *report.warnings),
-    )
+        ending = Ending(problem=str(error), begun=begun)
+    else:
+        ending = Ending(served.outcome, link.problem, link=served.link, timing=served.timing)
+    ending = replace(ending, loop_seconds=clock.seconds).warned(warnings)
+    return _with_station(ending, station.report()) if station else ending
+
+
+def _with_station(ending: Ending, report: StationReport) -> Ending:
+    return replace(ending, station=report).warned(report.warnings)
 
 
 def rehearse_apart(
@@ -198,7 +197,7 @@ class _Rehearsal:
                 self._ending = replace(ending, begun=True, loop_seconds=seconds)
                 self._progress(tick, glance)
             case Warned(text):
-                self._ending = replace(ending, warnings=(*ending.warnings, text))
+                self._ending = ending.warned([text])
             case Finished(reason, tick, seconds, link, timing):
                 outcome = Outcome(EndReason(reason), tick)
                 self._ending = replace(
@@ -215,8 +214,7 @@ class _Rehearsal:
     def _take_of_station(self, report: object) -> None:
         match report:
             case Answered(station):
-                warnings = (*self._ending.warnings, *station.warnings)
-                self._ending = replace(self._ending, station=station, warnings=warnings)
+                self._ending = _with_station(self._ending, station)
             case Failed(reason, begun):
                 self._fail(reason, begun)
             case Ended(how):

@@ -5,11 +5,12 @@ from pathlib import Path
 
 from laglab.runs.ending import Ending
 from laglab.runs.glance import OnTick
-from laglab.runs.rehearse import MakeController, Transport, rehearse_apart, rehearse_inline
+from laglab.runs.rehearse import Transport, rehearse_apart, rehearse_inline
 from laglab.runs.robot_side import Setup
 from laglab.scenario import Scenario
 from laglab_control import Controller
 from laglab_gateway import FileRecorder, TraceError
+from laglab_station import MakeController
 
 
 def run_into(

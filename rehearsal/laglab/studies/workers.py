@@ -93,7 +93,7 @@ class Processes:
                 worker = started(name, f"{__name__}:work", asked.call, inbox, again=True)
                 try:
                     child = stack.enter_context(worker)
-                except OSError as error:
+                except (OSError, RuntimeError) as error:  # no process, or no thread to read it
                     asked.future.set_exception(RunError(f"no worker can be started: {error}"))
                     asked = self._next()
                 else:
@@ -118,7 +118,7 @@ class Processes:
                 return asked
             match report:
                 case Computed(answer):
-                    asked.future.set_result(pickle.loads(answer))
+                    _answer(asked.future, answer)
                 case Failed(reason):
                     asked.future.set_exception(RunError(reason))
             following = self._next()
@@ -127,6 +127,13 @@ class Processes:
             asked = following
             child.order(asked.call)
         return None
+
+
+def _answer(future: "Future[Any]", answer: bytes) -> None:
+    try:
+        future.set_result(pickle.loads(answer))
+    except Exception as error:  # whatever it is made of may refuse to be made again
+        future.set_exception(RunError(f"the answer of a job cannot be read: {error!r}"))
 
 
 def _given_up(asked: _Asked, how: str) -> bool:

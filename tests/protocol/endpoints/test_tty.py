@@ -112,6 +112,29 @@ def test_a_file_is_not_replaced(tmp_path: Path) -> None:
     assert path.read_text() == "precious"
 
 
+def test_nor_is_a_link_to_one(tmp_path: Path) -> None:
+    """But that of an earlier run, whose terminal is gone or another's by now."""
+    (tmp_path / "notes").write_text("precious")
+    path = tmp_path / "robot"
+    for target in (tmp_path / "notes", Path("/dev/ttyUSB0")):
+        path.symlink_to(target)
+        with pytest.raises(PortBusyError, match="robot"):
+            open_endpoint(f"pty://{path}")
+        assert path.readlink() == target
+        path.unlink()
+
+
+@pytest.mark.parametrize("scheme", ["pty", "serial"])
+def test_what_is_closed_writes_nowhere(stack: ExitStack, tmp_path: Path, scheme: str) -> None:
+    """Its descriptor's number goes to the next file that is opened."""
+    ends = dict(zip(("pty", "serial"), serial_pair(stack, tmp_path / "robot"), strict=True))
+    ends[scheme].close()
+    path = tmp_path / "next"
+    with path.open("wb"), pytest.raises(FarEndGoneError):
+        ends[scheme].send(b"anybody?")
+    assert path.read_bytes() == b""
+
+
 def test_a_second_reader_is_refused(stack: ExitStack, tmp_path: Path) -> None:
     serial_pair(stack, tmp_path / "robot")
 

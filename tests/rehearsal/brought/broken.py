@@ -199,6 +199,18 @@ class Plain(RightPlant):
         self.sense()
 
 
+class Halting(RightPlant):
+    """At tick 20."""
+
+    ticks = 0
+
+    def step(self, v, omega):
+        super().step(v, omega)
+        self.ticks += 1
+        if self.ticks == 20:
+            raise RuntimeError("the motor burnt")
+
+
 class ShortReading(RightPlant):
     def read(self):
         return self.pose

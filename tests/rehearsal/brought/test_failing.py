@@ -10,6 +10,7 @@ import pytest
 
 from laglab.runs import rehearse
 from laglab.runs.waiting import in_time
+from laglab.runs.whole import run_into
 from laglab.scenario import load
 from laglab_control import PluginError
 from laglab_gateway import MemoryRecorder
@@ -95,6 +96,20 @@ def test_whatever_it_answers_at_tick_40_is_told(what: str) -> None:
     assert ending.exit_code == 4
     assert ending.problem.startswith(f"tick 40: mine:{ANSWERS[what]}")
     assert 41 <= len(recorder.rows) <= 42
+
+
+@pytest.mark.usefixtures("brought")
+@pytest.mark.parametrize("transport", ["inline", "udp"])
+def test_where_the_robot_fails_the_station_has_its_say(
+    tmp_path: Path, transport: rehearse.Transport
+) -> None:
+    """And what both sides warn of is told once."""
+    told = {"plant.kind": "broken:Halting", "safety.v_limit": 0.01, "duration": 2.0}
+    ending = run_into(tmp_path / "run", load("lab", told), transport, rehearse.unheard)
+    assert "the motor burnt" in ending.problem
+    assert ending.station is not None
+    warned = [text for text in ending.warnings if "told different things" in text]
+    assert len(warned) == 1
 
 
 def test_a_guard_lets_no_such_state_pass(brought: Path, ended: Ended) -> None:

@@ -115,7 +115,7 @@ def _read(child: Child, inbox: Inbox) -> None:
     assert child.process.stdout is not None
     with child.process.stdout as lines:
         for line in lines:
-            if line.endswith(b"\n"):  # or it died in the middle of it
+            with suppress(msgspec.DecodeError):  # not ours, or it died in the middle of it
                 inbox.put(Letter(child, _decode(line)))
     how = _how_it_ended(child.process.wait())
     inbox.put(Letter(child, Ended(f"the {child.name} process {how}")))
