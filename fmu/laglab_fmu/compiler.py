@@ -78,13 +78,23 @@ def c_compiler() -> list[str]:
 
 
 def host_compiler() -> list[str] | None:
-    """The command of the host's own: $CC, else cc, gcc or clang on the PATH; None without."""
-    chosen = os.environ.get("CC", "").strip()
-    for candidate in [chosen] if chosen else ["cc", "gcc", "clang"]:
-        words = shlex.split(candidate)
-        if shutil.which(words[0]):
-            return words
-    return None
+    """The command of the host's own: $CC, else cc, gcc or clang on the PATH; None without.
+
+    Raises CompilerNotFoundError: $CC is no command here.
+    """
+    if chosen := os.environ.get("CC", "").strip():
+        return _command(chosen)
+    return next(([name] for name in ("cc", "gcc", "clang") if shutil.which(name)), None)
+
+
+def _command(chosen: str) -> list[str]:
+    try:
+        words = shlex.split(chosen)
+    except ValueError:
+        words = []
+    if not (words and shutil.which(words[0])):
+        raise CompilerNotFoundError(f"CC={chosen!r} is no command here: correct or unset it")
+    return words
 
 
 def zig_compiler(target: Platform) -> list[str]:

@@ -45,7 +45,7 @@ from laglab_gateway.record.files import (
 from laglab_gateway.record.lateness import TimingReport
 from laglab_gateway.record.recorder import MemoryRecorder, Recorder, Tapped
 from laglab_gateway.record.rows import FOLLOWED, ArrivalRow, ClaimRow, TimingRow, claimed
-from laglab_gateway.record.text import csv_header, csv_lines
+from laglab_gateway.record.text import csv_header, csv_lines, whole_lines
 from laglab_gateway.record.trace import (
     Trace,
     TraceRow,
@@ -141,4 +141,5 @@ __all__ = [
     "standard_parameters",
     "trace_of",
     "trace_pieces",
+    "whole_lines",
 ]

@@ -65,6 +65,11 @@ def test_the_compiler_is_the_one_asked_for_and_ziglang_the_last(
     assert c_compiler() == ["other", "-m64"]
     monkeypatch.setenv("CC", " ")
     assert c_compiler() == ["gcc"]
+    for none_at_all in ("another -m64", 'other "-m64'):
+        monkeypatch.setenv("CC", none_at_all)
+        with pytest.raises(CompilerNotFoundError, match=r"CC=.*correct or unset it"):
+            c_compiler()
+    monkeypatch.delenv("CC")
     monkeypatch.setenv("PATH", str(tmp_path / "empty"))
     assert c_compiler()[1:4] == ["-m", "ziglang", "cc"]
 

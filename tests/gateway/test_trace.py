@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from laglab_gateway import FileRecorder, TraceError, TraceRow, read_trace
+from laglab_gateway import FileRecorder, TraceError, TraceRow, read_trace, trace_pieces
 
 doubles = st.floats(allow_nan=False)
 
@@ -38,6 +38,21 @@ def test_what_is_no_trace_is_refused_by_name(tmp_path: Path, text: str) -> None:
     path.write_text(text)
     with pytest.raises(TraceError, match=r"other\.csv"):
         read_trace(path)
+
+
+def test_only_the_last_row_may_be_cut_short(tmp_path: Path) -> None:
+    """Wherever the pieces end in which it is read."""
+    path, width = tmp_path / "trace.csv", len(TraceRow._fields)
+    lines = [",".join([str(tick)] * width) for tick in range(20)]
+    for cut, whole in ((9, False), (19, True)):
+        told = [line if tick != cut else line[:-9] for tick, line in enumerate(lines)]
+        path.write_text("\n".join([",".join(TraceRow._fields), *told]))
+        for rows in (7, 10, 19, 20):
+            if whole:
+                assert sum(len(piece["tick"]) for piece in trace_pieces(path, rows)) == 19
+            else:
+                with pytest.raises(TraceError, match="another number of columns"):
+                    list(trace_pieces(path, rows))
 
 
 def test_a_directory_that_cannot_be_written_is_named(tmp_path: Path) -> None:

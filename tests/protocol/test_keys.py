@@ -149,7 +149,7 @@ def test_the_file_is_not_written_for_every_frame(tmp_path: Path) -> None:
     assert StoredTimestamps(path).last[STREAM] >= stamp_of(said[-1]) > NOW + AHEAD
 
 
-@pytest.mark.parametrize("text", ["[1]", "{", '{"a": 1}', '{"0/1/1": "x"}'])
+@pytest.mark.parametrize("text", ["[1]", "{", '{"a": 1}', '{"0/1/1": "x"}', '{"0/1/1": null}'])
 def test_spoiled_timestamps_are_not_forgotten_quietly(tmp_path: Path, text: str) -> None:
     path = tmp_path / "timestamps"
     path.write_text(text)

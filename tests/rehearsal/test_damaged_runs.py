@@ -35,6 +35,7 @@ GOOD_AS_FAR_AS_IT_GOES = {
     ("trace.csv", "half"),
     ("arrivals.csv", "half"),
     ("claims.csv", "half"),
+    ("shadow-ekf.csv", "half"),
     ("robot.tlog", "half"),
 }
 """An empty scenario runs by default; a record that was cut off is that of a shorter run."""

@@ -79,6 +79,12 @@ def test_the_medians_interval_holds_it_as_often_as_it_says():
     assert 0.94 < held < 0.98
 
 
+def test_the_medians_interval_has_no_favourite_side():
+    for count in (3, 20, 51):
+        centre, low, high = median(np.arange(count))
+        assert centre - low == high - centre
+
+
 def test_a_cell_holds_its_own_runs():
     runs = study()
     into = sorted_into(runs, Layout(N, M, KIND, ()))

@@ -51,6 +51,7 @@ def test_a_parser_that_is_not_installed_is_said(monkeypatch: pytest.MonkeyPatch)
         (("udpout://127.0.0.1:9", "--self-test"), "say nothing else with it"),
         (("--self-test", "--side", "robot"), "say nothing else with it"),
         (("--self-test", "--pace", "realtime"), "say nothing else with it"),
+        (("--self-test", "--wait", "9"), "say nothing else with it"),
         (("--self-test", "--silent"), "say nothing else with it"),
         (("--side", "robot"), "say where the other side answers"),
         (("udpout://127.0.0.1:9",), "say where the other side answers"),

@@ -1,7 +1,8 @@
 """Rows of tables as text, many at a time: a tenth of what the same costs one by one."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice
 from math import isfinite
 
 from msgspec.json import Encoder
@@ -28,6 +29,22 @@ def csv_lines(rows: Sequence[tuple[Cell, ...]]) -> bytes:
         return "".join(map(_line, rows)).encode()
     text = text[2:-2].replace(b"],[", b"\n").replace(b'"', b"").replace(b"null", b"")
     return _SMALL.sub(_small, _EXPONENT.sub(_exponent, text)) + b"\n"
+
+
+def whole_lines(lines: Iterator[list[str]], cells: int, most: int) -> Iterator[list[list[str]]]:
+    """A table's lines of so many cells, at `most` at a time; the last, if cut short, is left out.
+
+    Raises ValueError: another line has another number of cells.
+    """
+    piece = list(islice(lines, most))
+    while piece:
+        following = list(islice(lines, most))
+        if not following and len(piece[-1]) < cells:
+            del piece[-1]
+        if any(len(line) != cells for line in piece):
+            raise ValueError("a row has another number of columns")
+        yield piece
+        piece = following
 
 
 def _exponent(found: re.Match[bytes]) -> bytes:

@@ -2,7 +2,6 @@
 
 import csv
 from collections.abc import Iterator, Sequence
-from itertools import islice
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
 
@@ -10,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab_gateway.errors import TraceError
+from laglab_gateway.record.text import whole_lines
 
 
 class TraceRow(NamedTuple):
@@ -64,7 +64,7 @@ def trace_pieces(path: Path, rows: int = 5_000) -> Iterator[Trace]:
             if next(lines, None) != list(TraceRow._fields):
                 raise TraceError(f"{path} is not a trace: expected the columns {HEADER.strip()}")
             empty = True
-            while piece := list(islice(lines, rows)):
+            for piece in whole_lines(lines, len(TraceRow._fields), rows):
                 if columns := _columns(piece):
                     empty = False
                     yield columns
@@ -77,10 +77,6 @@ def trace_pieces(path: Path, rows: int = 5_000) -> Iterator[Trace]:
 
 
 def _columns(lines: list[list[str]]) -> Trace:
-    if len(lines[-1]) != len(TraceRow._fields):
-        del lines[-1]
-    if any(len(line) != len(TraceRow._fields) for line in lines):
-        raise ValueError("a row has another number of columns")
     cells = [[float(cell or "nan") for cell in line] for line in lines]
     table = np.array(cells, dtype=np.float64).T
     return dict(zip(TraceRow._fields, table, strict=True)) if cells else {}

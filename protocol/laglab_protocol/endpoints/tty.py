@@ -1,6 +1,7 @@
 """Real serial ports, and pseudo-terminals that look like one to any other program."""
 
 import contextlib
+import errno
 import os
 import re
 import select
@@ -223,6 +224,6 @@ def _make_way(link: Path) -> None:
 def _cannot_open(name: str, error: Exception) -> NoSuchPortError | PortBusyError:
     if "exclusively lock" in str(error):
         return PortBusyError(f"{name}: another program holds the port: end it first")
-    if getattr(error, "errno", None) == 13:
+    if getattr(error, "errno", None) == errno.EACCES:
         return NoSuchPortError(f"{name}: not permitted: join the group that owns the port")
     return NoSuchPortError(f"{name}: cannot open it as a serial port: {error}: check port and baud")

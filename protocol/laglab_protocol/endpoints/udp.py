@@ -1,5 +1,6 @@
 """UDP, both ways round: `udpin` waits for a peer, `udpout` goes to one."""
 
+import errno
 import ipaddress
 import selectors
 import socket
@@ -201,9 +202,9 @@ def _spelled(scheme: str, address: Any) -> str:
 
 
 def _cannot(what: str, name: str, error: OSError) -> EndpointError:
-    if isinstance(error, PermissionError):
+    if isinstance(error, PermissionError) and what == "bind":
         return NoSuchPortError(f"cannot {what} {name}: not permitted: take a port above 1023")
-    if error.strerror == "Address already in use":
+    if error.errno == errno.EADDRINUSE:
         return PortBusyError(
             f"cannot {what} {name}: the port is in use: end the other program or take another port"
         )

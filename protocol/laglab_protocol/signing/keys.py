@@ -70,7 +70,7 @@ class StoredTimestamps(Timestamps):
         try:
             stored = json.loads(path.read_text()) if path.exists() else {}
             self.places = {_stream(name): Place(int(last), 0) for name, last in stored.items()}
-        except (OSError, ValueError, AttributeError) as error:
+        except (OSError, ValueError, TypeError, AttributeError) as error:
             raise KeyFileError(
                 f"{path} does not hold the timestamps of a key: {error}; without them old frames "
                 "could be played again: restore it, or make a new key for both sides"

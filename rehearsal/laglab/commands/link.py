@@ -1,5 +1,6 @@
 """`laglab link`: the link you have, measured."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
@@ -176,6 +177,11 @@ def import_(
     FILE is known by what is in it.
     """
     table = read_table(file, mean, spread)
+    if table is None:
+        _refuse(file, "is no table of netem's", {"--mean": mean, "--spread": spread})
+    else:
+        others = {"--interval": interval, "--back": back, "--clocks-within": clocks_within}
+        _refuse(file, "is a table of netem's", others)
     out = out or Path("link.csv" if table is None else "link.toml")
     file_place("--out", out)
     if table is not None:
@@ -187,6 +193,13 @@ def import_(
         write_link_log(measured, out)
         print_measured(measured, terminal())
     print(out)
+
+
+def _refuse(file: Path, what: str, options: Mapping[str, object]) -> None:
+    """Those of them that were given."""
+    for option, value in options.items():
+        if value is not None:
+            raise typer.BadParameter(f"{file} {what}, so {option} is not for it: leave it out")
 
 
 @app.command("fit")

@@ -1,6 +1,7 @@
 """`laglab protocol` and `laglab conform`."""
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
@@ -92,13 +93,14 @@ def conform(
         typer.Option(help="Whether a robot waits for each command, or has a clock of its own."),
     ] = None,
     wait: Annotated[
-        float,
+        float | None,
         typer.Option(
             metavar="SECONDS",
             min=0.1,
             help="How long a reaction may take: longer for a robot behind long delays.",
+            show_default=f"{Waits().react:g}",
         ),
-    ] = Waits().react,
+    ] = None,
     silent: Annotated[
         bool,
         typer.Option(
@@ -119,38 +121,51 @@ def conform(
     The robot, or the controller, whose run it ends.
     """
     if self_test:
-        if url or side or junit or key or pace or silent:
+        if url or side or junit or key or pace or wait or silent:
             raise typer.BadParameter("--self-test has robots of its own: say nothing else with it")
-        with status() as tell:
-            tell("robots that read by other people's parsers")
-            tested = parsers_tested()
-        print(tested.table())
+        _self_test()
         return
     if url is None or side is None:
         raise typer.BadParameter("say where the other side answers, URL, and what it is, --side")
-    if side == "controller" and pace:
-        raise typer.BadParameter("a controller keeps no pace of its own: leave --pace out")
-    if silent and (side == "controller" or pace == "realtime"):
-        raise typer.BadParameter("--silent is for a robot in lock-step, which alone gives up")
+    _refuse_contradictions(side, pace, silent)
     if key:
         read_key(key)
     if junit:
         file_place("--junit", junit)
-    said = False
+    react = Waits().react if wait is None else wait
+    waits = Waits(appear=max(Waits().appear, react), react=react)
+    scope: Scope = "silence" if silent else "all"
     with status() as tell:
-
-        def progress(what: str) -> None:
-            nonlocal said
-            if not said:  # now that URL could be opened
-                print(f"testing the {side} at {url}", file=sys.stderr, flush=True)
-            said = True
-            tell(what)
-
-        waits = Waits(appear=max(Waits().appear, wait), react=wait)
-        how = pace or "lockstep"
-        scope: Scope = "silence" if silent else "all"
-        report = test_conformance(url, side, key, waits, how, scope, progress)
+        progress = _announcing(f"testing the {side} at {url}", tell)
+        report = test_conformance(url, side, key, waits, pace or "lockstep", scope, progress)
     print(report.table())
     if junit:
         write_whole(junit, report.junit())
     raise typer.Exit(0 if report.conforms else 1)
+
+
+def _self_test() -> None:
+    with status() as tell:
+        tell("robots that read by other people's parsers")
+        tested = parsers_tested()
+    print(tested.table())
+
+
+def _refuse_contradictions(side: Side, pace: Pace | None, silent: bool) -> None:
+    if side == "controller" and pace:
+        raise typer.BadParameter("a controller keeps no pace of its own: leave --pace out")
+    if silent and (side == "controller" or pace == "realtime"):
+        raise typer.BadParameter("--silent is for a robot in lock-step, which alone gives up")
+
+
+def _announcing(what: str, tell: Callable[[str], None]) -> Callable[[str], None]:
+    """Passes progress on; says before what is done at all, when it is sure to begin."""
+    said: list[str] = []
+
+    def progress(step: str) -> None:
+        if not said:  # now that URL could be opened
+            said.append(what)
+            print(what, file=sys.stderr, flush=True)
+        tell(step)
+
+    return progress

@@ -137,8 +137,9 @@ def _flow(rows: list[LinkRow], interval: float, fixed: int) -> Flow:
         return Flow(np.empty(0), np.empty(0), 0)
     first = rows[0].tick
     delay = np.full(max(row.tick for row in rows) - first + 1, np.nan)
-    for row in reversed(rows):
+    for row in rows:
         if row.fate in CAME and row.tick >= first:
-            delay[row.tick - first] = row.extra + fixed * interval
+            at = row.tick - first
+            delay[at] = np.fmin(delay[at], row.extra + fixed * interval)
     sent = interval * np.arange(len(delay), dtype=np.float64)
     return Flow(sent, delay, max(row.size for row in rows))

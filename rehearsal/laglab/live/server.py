@@ -56,6 +56,10 @@ class _Server(asyncio.DatagramProtocol):
         self._order = order
         self._scenario = Scenario.from_toml(order.scenario)
         self._door = Door(Place(order.host, order.port), order.token)
+        self._pages = {
+            controls: page_html(self._scenario, order.origin, controls).encode()
+            for controls in (False, True)
+        }
         self._known = Known()
         self._readers: set[asyncio.StreamWriter] = set()
         self._waiting: list[Rows] = []
@@ -77,10 +81,6 @@ class _Server(asyncio.DatagramProtocol):
         )
         self._ears = ears
         line = Line(ears.get_extra_info("sockname")[1], self._order.secret)
-        self._pages = {
-            controls: page_html(self._scenario, self._order.origin, controls).encode()
-            for controls in (False, True)
-        }
         tell(Showing(port, str(line)))
         try:
             while True:
@@ -156,7 +156,8 @@ class _Server(asyncio.DatagramProtocol):
         try:
             asked = await asyncio.wait_for(reader.readuntil(b"\r\n\r\n"), PATIENCE)
             if self._answer(asked, writer):
-                await reader.read()  # to its end: then the reader has gone
+                while await reader.read(LONGEST_HEAD):
+                    pass  # to the end: then the reader has gone
         except (OSError, EOFError, TimeoutError, asyncio.LimitOverrunError):
             pass
         finally:

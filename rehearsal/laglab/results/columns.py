@@ -2,7 +2,6 @@
 
 import csv
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from itertools import islice
 from pathlib import Path
 from typing import TypeVar, get_type_hints
 
@@ -10,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab.errors import NoRunError
-from laglab_gateway import Row
+from laglab_gateway import Row, whole_lines
 
 Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[np.generic]]
@@ -42,20 +41,21 @@ def read_columns(path: Path, kind: type[Row]) -> Columns:
 
 
 def column_pieces(path: Path, kind: type[Row]) -> Iterator[Columns]:
-    """The same, AT_A_TIME rows at a time; a row cut short is left out. Raises NoRunError."""
+    """The same, AT_A_TIME rows at a time. Raises NoRunError."""
     hints = get_type_hints(kind)
     if path.exists():
         yield from csv_pieces(path, tuple(hints), lambda lines: _parsed(lines, hints))
 
 
 def csv_pieces(path: Path, names: Sequence[str], parsed: Callable[[Lines], T]) -> Iterator[T]:
-    """What a CSV file of these columns holds, AT_A_TIME rows at a time. Raises NoRunError."""
+    """What a CSV file of these columns holds, AT_A_TIME rows at a time; a last one that was cut
+    short is left out. Raises NoRunError."""
     try:
         with path.open(newline="", encoding="utf-8") as file:
             lines = csv.reader(file)
             if next(lines, None) != list(names):
                 raise NoRunError(f"{path}: expected the columns {','.join(names)}")
-            while piece := list(islice(lines, AT_A_TIME)):
+            for piece in whole_lines(lines, len(names), AT_A_TIME):
                 yield parsed(piece)
     except (OSError, ValueError, OverflowError, csv.Error) as error:
         raise NoRunError(f"{path} cannot be read: {error}") from error
@@ -109,8 +109,7 @@ def at_ticks(columns: Mapping[str, NDArray[Cell]], ticks: Array) -> dict[str, ND
 
 
 def _parsed(lines: Lines, hints: Mapping[str, object]) -> Columns:
-    whole = [line for line in lines if len(line) == len(hints)]
-    cells = zip(*whole, strict=True) if whole else ((),) * len(hints)
+    cells = zip(*lines, strict=True) if lines else ((),) * len(hints)
     return {
         name: np.array(column if hint is str else [cell or "nan" for cell in column]).astype(
             _dtype(hint)

@@ -6,7 +6,7 @@ from contextlib import ExitStack
 
 import pytest
 
-from laglab_protocol import Endpoint, open_endpoint
+from laglab_protocol import Endpoint, NoSuchPortError, open_endpoint
 
 WAIT = 2.0
 
@@ -27,6 +27,11 @@ def test_udp_both_ways(stack: ExitStack) -> None:
     assert station.receive(WAIT) == b"welcome"
     assert robot.datagrams
     assert robot.loopback
+
+
+def test_what_may_not_be_reached_is_no_matter_of_ports() -> None:
+    with pytest.raises(NoSuchPortError, match="check host and port"):
+        open_endpoint("udpout://255.255.255.255:14550")
 
 
 def test_udpin_without_a_peer_drops(stack: ExitStack) -> None:

@@ -19,6 +19,7 @@ from laglab.link.fitting import (
     simulated,
     suggested,
 )
+from laglab.link.fitting.delays import CLOSE, distance_to
 from laglab.link.link_table import Bounds, FittedLink, link_toml
 from laglab.link.measured import Flow, MeasuredLink, bursts, read_measured, write_link_log
 from laglab.link.told import overtaken
@@ -109,6 +110,15 @@ def test_what_does_not_scatter_is_constant_or_nothing() -> None:
     assert fit_delays(np.full(9, 0.004)) == ExtraDelay("constant", 0.004)
     assert fit_delays(np.zeros(9)) is None
     assert fit_delays(np.full(9, np.nan)) is None
+
+
+def test_what_takes_few_values_is_judged_where_they_are() -> None:
+    """Delays in whole ticks do."""
+    came = np.repeat([0.0, 0.01, 0.02], [300, 600, 100])
+    fitted = fit_delays(came)
+    assert fitted is not None
+    assert distance_to(came, fitted) < CLOSE / 2
+    assert distance_to(came, ExtraDelay("exponential", 0.008)) == pytest.approx(0.413, abs=0.001)
 
 
 def test_two_values_are_a_table_and_equal_ones_do_not_wander() -> None:

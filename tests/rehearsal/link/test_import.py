@@ -17,6 +17,7 @@ from laglab.link.importing.tables import LARGEST
 from laglab.link.measured import MeasuredLink, read_measured
 from laglab.link.probing import Sizes
 from laglab.scenario import load
+from laglab_gateway import LinkRow
 
 Laglab = Callable[..., subprocess.CompletedProcess[str]]
 Refused = Callable[..., str]
@@ -225,6 +226,34 @@ def test_what_was_imported_is_read_again(laglab: Laglab, tmp_path: Path) -> None
     again = read_measured(tmp_path / "link.csv", 0.01)
     assert len(again.command.delay) == 100
     assert laglab("link", "import", "link.csv").returncode == 2
+
+
+def test_of_several_copies_the_first_that_came_counts(tmp_path: Path) -> None:
+    copies = ("0,0,delivered,0.05", "0,1,delivered,0.01", "1,0,lost,0.0", "1,1,delivered,0.03")
+    told = [each.split(",") for each in copies]
+    lines = [f"command,{tick},0,{copy},35,{fate},{extra}" for tick, copy, fate, extra in told]
+    (tmp_path / "link.csv").write_text("\n".join((",".join(LinkRow._fields), *lines)) + "\n")
+    measured = read_measured(tmp_path / "link.csv", 0.01)
+    np.testing.assert_allclose(measured.command.delay, [0.01, 0.03])
+
+
+NOT_FOR = {
+    "ping.txt": ("--back", "--clocks-within", "--mean", "--spread"),
+    "trace": ("--clocks-within", "--mean", "--spread"),
+    "two.dist": ("--back", "--clocks-within", "--interval"),
+}
+
+
+@pytest.mark.parametrize("name", NOT_FOR)
+def test_an_option_for_another_kind_of_file_is_refused(
+    name: str, tmp_path: Path, refused: Refused
+) -> None:
+    files = {"ping.txt": pings(3), "trace": "1\n5\n9\n", "two.dist": NETEM}
+    (tmp_path / name).write_text(files[name])
+    table = ("--mean", "0.1", "--spread", "0.1") if name == "two.dist" else ()
+    for option in NOT_FOR[name]:
+        command = ("link", "import", tmp_path / name, *table, option, "0.01")
+        assert f"{option} is not" in refused(*command)
 
 
 def irtt_of(rtt: int, apart: int = 10_000_000) -> bytes:

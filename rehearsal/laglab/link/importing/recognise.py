@@ -2,7 +2,9 @@
 
 import gzip
 import zlib
+from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 from laglab.link.errors import LinkFileError
 from laglab.link.importing.conversations import read_capture, read_log
@@ -58,25 +60,39 @@ def _bytes_of(path: Path) -> bytes:
     return data
 
 
+class _Kind(NamedTuple):
+    called: str
+    read: Callable[[], MeasuredLink]
+    option: str = ""
+    """That is for files of this kind alone."""
+
+
 def _read(path: Path, how: How) -> MeasuredLink:
-    data = _bytes_of(path)
+    kind = _kind(_bytes_of(path), path, how)
+    for option, value in (("--clocks-within", how.within), ("--back", how.back)):
+        if value is not None and option != kind.option:
+            raise LinkFileError(f"{path} is {kind.called}, for which {option} is not: leave it out")
+    return kind.read()
+
+
+def _kind(data: bytes, path: Path, how: How) -> _Kind:
     if data.startswith(CAPTURES):
-        return read_capture(path, how)
+        return _Kind("a capture", lambda: read_capture(path, how))
     if len(data) > FRAME_AT and data[FRAME_AT] == FRAME_START:
-        return read_log(path, how)
+        return _Kind("a telemetry log", lambda: read_log(path, how))
     if data.lstrip().startswith(b"{"):
-        return read_irtt(data, how, str(path))
-    return _read_text(data.decode("utf-8", errors="replace"), path, how)
+        return _Kind("irtt's JSON", lambda: read_irtt(data, how, str(path)), "--clocks-within")
+    return _kind_of_text(data.decode("utf-8", errors="replace"), path, how)
 
 
-def _read_text(text: str, path: Path, how: How) -> MeasuredLink:
+def _kind_of_text(text: str, path: Path, how: How) -> _Kind:
     if text.startswith(HEADING):
         raise LinkFileError(f"{path} is a link.csv already: give it to `laglab link fit`")
     numbers = numbers_of(text)
     if numbers and is_trace(numbers):
-        return read_mahimahi(numbers, how, str(path))
+        return _Kind("a mahimahi trace", lambda: read_mahimahi(numbers, how, str(path)), "--back")
     if is_ping(text):
-        return read_ping(text, how, str(path))
+        return _Kind("ping's output", lambda: read_ping(text, how, str(path)))
     raise LinkFileError(
         f"{path}: none of what is known here: ping's output, irtt's JSON, a mahimahi trace, a "
         "table of netem's, a telemetry log, a capture"

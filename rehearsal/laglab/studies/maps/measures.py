@@ -81,8 +81,7 @@ def median(values: NDArray[np.float64]) -> Interval:
         return NONE
     half = Z * math.sqrt(len(known)) / 2
     low = max(math.floor(len(known) / 2 - half), 0)
-    high = min(math.ceil(len(known) / 2 + half), len(known) - 1)
-    return Interval(float(np.median(known)), float(known[low]), float(known[high]))
+    return Interval(float(np.median(known)), float(known[low]), float(known[-1 - low]))
 
 
 class Summed(NamedTuple):
