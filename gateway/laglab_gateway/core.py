@@ -1,7 +1,7 @@
-"""A plant that is stepped, at the end of the link: bytes and a tick in, bytes out.
+"""A plant that is stepped, at the end of the link: frames and a tick in, the bytes of others out.
 
 One tick (in the order of docs/tick.md): `open_tick` samples the sensor and gives the frames
-for the station; `receive` takes the station's bytes; `settle` lets the commands that are due come
+for the station; `hear` takes the station's; `settle` lets the commands that are due come
 into force and sets the plant going; `close_tick` says what happened. `settle` comes right after
 `open_tick`, so what arrives during a tick counts from the next one on; only in lock-step with
 n = 0 it waits for the answer to this tick, so that n = 0 means no delay.

@@ -1,6 +1,7 @@
 """The pages in docs/ and the code agree: links, names, commands and equation numbers exist."""
 
 import ast
+import inspect
 import pkgutil
 import re
 import shlex
@@ -11,12 +12,14 @@ from pathlib import Path
 import pytest
 import typer
 
+import laglab
 from laglab.command import app_of
 from laglab.live import spelled_out
 from laglab.results.shadows import COLUMNS
 from laglab_control import Erratum, PolarLaw, delay_margin
 from laglab_control.estimators.popf import delay_limit
 from laglab_gateway import ROWS, TraceRow
+from laglab_gateway.drive import Rejection
 
 ROOT = Path(__file__).parents[2]
 COMPONENTS = ("fmu", "protocol", "gateway", "controller", "rehearsal", "examples", "tests")
@@ -25,7 +28,7 @@ THEORY = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
 GLOSSARY = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")
 
 EQUATION = re.compile(r"(?<![\w)\]])\((\d{1,2})\)")
-CITED_PAGE = re.compile(r"\bdocs/\w+\.md")
+CITED_PAGE = re.compile(r"\bdocs/[\w/-]+\.md")
 
 
 def named(path: Path) -> str:
@@ -76,12 +79,33 @@ def test_links_lead_somewhere(page: Path) -> None:
         assert not anchor or anchor in anchors(target), link
 
 
-@pytest.mark.parametrize("component", COMPONENTS)
-def test_pages_that_the_code_cites_are_there(component: str) -> None:
-    for pattern in ("*.py", "*.c", "*.h", "*.toml"):
-        for path in (ROOT / component).rglob(pattern):
-            for cited in CITED_PAGE.findall(path.read_text(encoding="utf-8")):
-                assert (ROOT / cited).exists(), f"{named(path)} cites {cited}"
+def test_pages_that_the_code_cites_are_there() -> None:
+    sources = [
+        path
+        for component in COMPONENTS
+        for pattern in ("*.py", "*.c", "*.h", "*.toml")
+        for path in (ROOT / component).rglob(pattern)
+    ]
+    cited = {
+        (named(path), page)
+        for path in sources
+        for page in CITED_PAGE.findall(path.read_text(encoding="utf-8"))
+    }
+    assert len(cited) > 20
+    assert not {(path, page) for path, page in cited if not (ROOT / page).exists()}
+
+
+def test_every_reason_for_not_following_a_command_is_told() -> None:
+    told = (ROOT / "docs" / "reference" / "files.md").read_text(encoding="utf-8")
+    assert not [each for each in Rejection if f"`{each.value}`" not in told]
+
+
+def test_the_arguments_of_a_run_are_those_of_the_code() -> None:
+    page = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+    told = re.search(r"^`laglab\.run\((.*?)\)`", page, flags=re.M | re.S)
+    assert told
+    names = [each.split("=")[0].strip() for each in told[1].split(",")]
+    assert [name for name in names if name != "*"] == list(inspect.signature(laglab.run).parameters)
 
 
 def test_the_equations_are_all_there_each_once() -> None:

@@ -97,8 +97,8 @@ def conform(
         typer.Option(
             metavar="SECONDS",
             min=0.1,
-            help="How long a reaction may take: longer for a robot behind long delays.",
-            show_default=f"{Waits().react:g}",
+            help=f"How long a reaction may take, {Waits().react:g} if not told: longer for a robot "
+            "behind long delays.",
         ),
     ] = None,
     silent: Annotated[
