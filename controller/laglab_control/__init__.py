@@ -15,7 +15,13 @@ from laglab_control.controller import (
     without_blind_guard,
 )
 from laglab_control.errata import Erratum, PrintedController
-from laglab_control.errors import ConfigError, ControlError, StampError
+from laglab_control.errors import (
+    ConfigError,
+    ControlError,
+    PluginError,
+    PluginFailedError,
+    StampError,
+)
 from laglab_control.estimators import (
     ESTIMATORS,
     Applied,
@@ -39,7 +45,7 @@ from laglab_control.estimators import (
     WheelScales,
 )
 from laglab_control.estimators.kalman import normalised_squared
-from laglab_control.flight import Echo
+from laglab_control.flight import Echo, Told
 from laglab_control.guard import Alarm, Guard
 from laglab_control.laws import (
     LAWS,
@@ -56,11 +62,12 @@ from laglab_control.laws import (
     Waypoints,
     delay_margin,
 )
-from laglab_control.model import Model, NonlinearModel
+from laglab_control.limits import limits
+from laglab_control.model import Matrix, Model, NonlinearModel, Vector
+from laglab_control.motion import Way
+from laglab_control.past import MEMORY
 from laglab_control.plugins import (
     Plugin,
-    PluginError,
-    PluginFailedError,
     at_tick,
     find_plugin,
     first_line,
@@ -75,6 +82,7 @@ __all__ = [
     "FAR",
     "INITIAL_VARIANCE",
     "LAWS",
+    "MEMORY",
     "Alarm",
     "Applied",
     "Backdated",
@@ -96,6 +104,7 @@ __all__ = [
     "Guard",
     "Law",
     "LiteralPopf",
+    "Matrix",
     "Measured",
     "Model",
     "NonlinearModel",
@@ -119,8 +128,11 @@ __all__ = [
     "State",
     "StationConfig",
     "Taken",
+    "Told",
     "TrackingLaw",
     "TuePredictor",
+    "Vector",
+    "Way",
     "Waypoints",
     "WheelScales",
     "at_tick",
@@ -132,6 +144,7 @@ __all__ = [
     "installed_plugins",
     "is_far",
     "is_module_class",
+    "limits",
     "normalised_squared",
     "replay",
     "without_blind_guard",

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from laglab_control.doubt import doubt
-from laglab_control.errors import ConfigError
+from laglab_control.errors import ConfigError, PluginError
 from laglab_control.estimators.brought import Brought
 from laglab_control.estimators.family import EstimatorKind, estimator_kind
 from laglab_control.estimators.interface import (
@@ -29,7 +29,6 @@ from laglab_control.laws import STAND_STILL, Demand, Law, PolarLaw, SpeedLimits,
 from laglab_control.limits import Ticks, check, covariance, finite_pose
 from laglab_control.model import Matrix, Vector
 from laglab_control.motion import Way, joined
-from laglab_control.plugins import PluginError
 from laglab_control.robot import RobotModel, Ways
 
 INITIAL_VARIANCE = 1e-4

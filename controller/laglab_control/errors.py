@@ -12,3 +12,11 @@ class ConfigError(ControlError, ValueError):
 
 class StampError(ControlError):
     """A measurement says that it was sampled before tick 0, or in the future."""
+
+
+class PluginError(ControlError):
+    """What was named cannot be had, or does not do what it must; the text names it."""
+
+
+class PluginFailedError(PluginError):
+    """It failed while it ran, or answered what it must not."""

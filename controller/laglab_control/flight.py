@@ -5,23 +5,18 @@ from collections.abc import Sequence
 from operator import mul
 from typing import NamedTuple
 
-import numpy as np
-
 from laglab_control.estimators.interface import Applied
-from laglab_control.laws.interface import Demand
+from laglab_control.laws.interface import STAND, Demand
 from laglab_control.model import Vector
 from laglab_control.motion import NOWHERE, Way, joined
 from laglab_control.past.log import Log, append, logged
+from laglab_control.past.memory import MEMORY
 from laglab_control.past.sliding import SlidingProduct
 from laglab_control.plans import Plans, no_plans
 from laglab_control.robot import Ways
 
-STAND = np.zeros(2)
-"""The input before any command is in force."""
 RECENT = 25
 """So many echoes tell delays of which n is the median."""
-MEMORY = 1024
-"""Ticks for which sent commands are kept."""
 GIVEN_UP = 256
 """Ticks after which an input that was not told is taken to have been as believed."""
 FEW = 20
@@ -65,6 +60,16 @@ class Told(NamedTuple):
         if not self.recent:
             return otherwise
         return sorted(self.recent)[len(self.recent) // 2] if self.spread else self.recent[0]
+
+    def after(
+        self, tick: int, echoes: Sequence[Echo], recalled: Sequence[Applied]
+    ) -> "tuple[Told, list[Applied]]":
+        """With what came at `tick`; and the inputs that are known by it."""
+        told = self
+        inputs = [Applied(echo.tick, echo.u) for echo in echoes] + list(recalled)
+        for echo in echoes:
+            told = _heard(told, echo, tick)
+        return _found(told, inputs, tick) if told.missing else told, inputs
 
     @property
     def settled(self) -> int:
@@ -149,7 +154,7 @@ def hear(
     if not (echoes or recalled):
         return flight, []
     tick, sent, n, told, in_flight, ahead, plans = flight
-    told, inputs = learned(told, tick, echoes, recalled)
+    told, inputs = told.after(tick, echoes, recalled)
     seen = told.usual_delay(otherwise=flight.usual_delay)
     if plans and seen >= n:  # the robot is that far on in its plans
         plans, seen = plans.late(seen - n), n
@@ -158,16 +163,6 @@ def hear(
         return flight, inputs
     flight = _rebuilt(robot, flight)
     return flight, inputs + _believed(flight, since=told.known + 1)
-
-
-def learned(
-    told: Told, tick: int, echoes: Sequence[Echo], recalled: Sequence[Applied]
-) -> tuple[Told, list[Applied]]:
-    """With what came at `tick`; and the inputs that are known by it."""
-    inputs = [Applied(echo.tick, echo.u) for echo in echoes] + list(recalled)
-    for echo in echoes:
-        told = _heard(told, echo, tick)
-    return _found(told, inputs, tick) if told.missing else told, inputs
 
 
 def _heard(told: Told, echo: Echo, tick: int) -> Told:

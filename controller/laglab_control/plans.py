@@ -5,13 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from laglab_control.laws.interface import Demand
+from laglab_control.laws.interface import STAND, Demand
 from laglab_control.model import Vector
 from laglab_control.past.log import Log, append, logged
-
-MEMORY = 1024
-"""Ticks for which plans are kept."""
-STAND = np.zeros(2)
+from laglab_control.past.memory import MEMORY
 
 
 class Plans(NamedTuple):

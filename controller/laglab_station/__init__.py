@@ -3,7 +3,9 @@
 from laglab_control import StationConfig
 from laglab_station.driver import MakeController
 from laglab_station.errors import RobotSilentError, StationError
+from laglab_station.hearing import echoes, recalled
 from laglab_station.loop import Onlooker, run_station
+from laglab_station.recalling import Questions
 from laglab_station.report import StationReport
 from laglab_station.session import SessionTick, heard, read_session
 from laglab_station.shadow import ShadowRow, shadow
@@ -12,6 +14,7 @@ from laglab_station.station import Station
 __all__ = [
     "MakeController",
     "Onlooker",
+    "Questions",
     "RobotSilentError",
     "SessionTick",
     "ShadowRow",
@@ -19,8 +22,10 @@ __all__ = [
     "StationConfig",
     "StationError",
     "StationReport",
+    "echoes",
     "heard",
     "read_session",
+    "recalled",
     "run_station",
     "shadow",
 ]

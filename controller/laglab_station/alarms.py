@@ -1,7 +1,6 @@
 """The alarms of a run: for the report, and for those who watch."""
 
-from laglab_control import Controller
-from laglab_control.controller import Control
+from laglab_control import Control, Controller
 from laglab_protocol import MAV_SEVERITY_WARNING, Message, Statustext
 from laglab_station.report import Alarm
 

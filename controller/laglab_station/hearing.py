@@ -8,8 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 import laglab_protocol as protocol
-from laglab_control.estimators.interface import Applied, Measured
-from laglab_control.flight import Echo
+from laglab_control import Applied, Echo, Measured
 from laglab_protocol import UNANNOUNCED, Measurement, Playout
 
 

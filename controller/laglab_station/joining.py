@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from laglab_control.model import Matrix, Vector
-from laglab_control.robot import RobotModel
+from laglab_control import Matrix, RobotModel, Vector
 from laglab_protocol import Measurement
 
 SAMPLES = 100

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from laglab_control.flight import Told
+from laglab_control import Told
 from laglab_protocol import Recall
 
 PATIENCE = 5

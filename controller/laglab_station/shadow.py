@@ -5,8 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from laglab_control import Control, Controller, Demand, StationConfig, at_tick
-from laglab_control.model import Matrix, Vector
+from laglab_control import Control, Controller, Demand, Matrix, StationConfig, Vector, at_tick
 from laglab_station.hearing import Came, PlayedOut, echoes, measured, recalled
 from laglab_station.session import SessionTick
 

@@ -4,8 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from laglab_control import Controller, PluginFailedError, StationConfig, at_tick
-from laglab_control.flight import MEMORY
+from laglab_control import MEMORY, Controller, PluginFailedError, StationConfig, at_tick
 from laglab_protocol import (
     STATION_COMPONENT,
     STATION_HEARTBEAT,

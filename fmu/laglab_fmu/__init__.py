@@ -8,7 +8,7 @@ ship. What needs FMPy is loaded when it is first used: who only talks to a robot
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from laglab_fmu.compiler import PLATFORMS, c_compiler
+from laglab_fmu.compiler import PLATFORMS, c_compiler, compile_library, host_platform
 from laglab_fmu.errors import (
     BuildError,
     CallError,
@@ -17,16 +17,21 @@ from laglab_fmu.errors import (
     FmuFileError,
     FmuNotBuiltError,
 )
-from laglab_fmu.parameters import Reading, RobotParameters
+from laglab_fmu.parameters import INTEGRATIONS, Reading, RobotParameters
 
 if TYPE_CHECKING:
     from laglab_fmu.archive.build import build_fmus
     from laglab_fmu.fleet import Fleet
     from laglab_fmu.robot import Robot
-    from laglab_fmu.slave import fleet_path, fmu_path
+    from laglab_fmu.slave import VERSIONS, fleet_path, fmu_path
+    from laglab_fmu.stepper import INPUTS, OUTPUTS
 
 __all__ = [
+    "INPUTS",
+    "INTEGRATIONS",
+    "OUTPUTS",
     "PLATFORMS",
+    "VERSIONS",
     "BuildError",
     "CallError",
     "CompilerNotFoundError",
@@ -39,11 +44,16 @@ __all__ = [
     "RobotParameters",
     "build_fmus",
     "c_compiler",
+    "compile_library",
     "fleet_path",
     "fmu_path",
+    "host_platform",
 ]
 
 _NEED_FMPY = {
+    "INPUTS": "stepper",
+    "OUTPUTS": "stepper",
+    "VERSIONS": "slave",
     "Fleet": "fleet",
     "Robot": "robot",
     "build_fmus": "archive.build",

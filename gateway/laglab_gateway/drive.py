@@ -17,6 +17,17 @@ from typing import Annotated
 from laglab_gateway.values import Positive, Seconds, checked, described
 from laglab_protocol import NO_COMMAND, Command, Planned, Speeds
 
+__all__ = [
+    "FASTEST",
+    "Drive",
+    "Rejection",
+    "Safety",
+    "follow",
+    "rejection",
+    "speeds",
+    "supervise",
+]
+
 FASTEST = 1e6
 """[m/s], [rad/s] Nothing drives faster, whatever the limits: the wheels' speeds must be finite."""
 

@@ -7,6 +7,11 @@ from itertools import islice
 
 from laglab_protocol import RECALLED, Applied, Recall, Speeds
 
+__all__ = [
+    "Owed",
+    "SpeedMemory",
+]
+
 KEPT = 1024
 """Ticks; a station that heard nothing for longer meets the robot anew."""
 

@@ -21,6 +21,22 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 
 from laglab_gateway.errors import ConfigError
 
+__all__ = [
+    "Duration",
+    "NotNegative",
+    "Number",
+    "Positive",
+    "Probability",
+    "Seconds",
+    "Switch",
+    "Ticks",
+    "Whole",
+    "checked",
+    "described",
+    "saying",
+    "wording",
+]
+
 Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[Number, Field(gt=0)]
 NotNegative = Annotated[Number, Field(ge=0)]

@@ -8,7 +8,7 @@ from laglab_conformance import controller, freerunning, lockstep
 from laglab_conformance.items import Item, carry_out
 from laglab_conformance.report import Mark, Report, Result
 from laglab_conformance.session import Waits
-from laglab_protocol.endpoints import open_endpoint
+from laglab_protocol import open_endpoint
 
 __all__ = ["Mark", "Pace", "Report", "Result", "Scope", "Side", "Waits", "conform"]
 

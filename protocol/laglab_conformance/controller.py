@@ -6,26 +6,26 @@ from typing import TypeAlias
 from laglab_conformance.framing import RECEIVING, SENDING, SIGNING
 from laglab_conformance.items import SOON, Item, reacts_soon, refused
 from laglab_conformance.session import DoesNotApplyError, NoReactionError, Session
-from laglab_protocol.framing.frame import Frame
-from laglab_protocol.messages.base import Message
-from laglab_protocol.messages.loop import (
+from laglab_protocol import (
     NO_COMMAND,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
     STATION_COMPONENT,
     STATION_SYSTEM,
+    Assembly,
     Command,
     End,
     EndReason,
     Estimate,
+    Frame,
+    Heartbeat,
     Measurement,
+    Message,
     Plan,
     Recall,
     Settings,
     Tick,
 )
-from laglab_protocol.messages.standard import Heartbeat
-from laglab_protocol.plans import Assembly
 
 Said: TypeAlias = Estimate | Recall | Plan | Command
 """What an answer is made of."""

@@ -5,7 +5,7 @@ import time
 from laglab_conformance.items import Item
 from laglab_conformance.robot import RobotSession
 from laglab_conformance.session import DoesNotApplyError, NoReactionError
-from laglab_protocol.messages.loop import End, EndReason, Tick
+from laglab_protocol import End, EndReason, Tick
 
 SILENCE = 3.0
 """[s] After so much of it a robot in lock-step gives its station up."""

@@ -6,10 +6,7 @@ from typing import Self
 from fastcrc import crc16
 from msgspec.structs import astuple
 
-from laglab_protocol.framing.frame import SIGNED, START
-from laglab_protocol.messages.base import Message
-from laglab_protocol.messages.layout import layout_of
-from laglab_protocol.signing.signature import Signer
+from laglab_protocol import SIGNED, START, Message, Signer, layout_of
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,7 @@ from dataclasses import replace
 from laglab_conformance.forge import Forged
 from laglab_conformance.items import Item, accepted, refused
 from laglab_conformance.session import DoesNotApplyError, Session
-from laglab_protocol.framing.frame import Refusal
-from laglab_protocol.messages.layout import layout_of
-from laglab_protocol.signing.signature import Signer, signing_time
+from laglab_protocol import Refusal, Signer, layout_of, signing_time
 
 UNKNOWN_ID = 59_999
 UNKNOWN_FLAG = 0x40

@@ -24,8 +24,7 @@ from laglab_conformance.robot import (
 from laglab_conformance.services import SERVICES
 from laglab_conformance.session import DoesNotApplyError, NoReactionError
 from laglab_conformance.stamps import STAMPED
-from laglab_protocol.framing.frame import Frame
-from laglab_protocol.messages.loop import Measurement, Tick
+from laglab_protocol import Frame, Measurement, Tick
 
 UNEVEN = 0.25
 """By how much the ticks a second may differ within a few seconds, as a share."""

@@ -22,9 +22,7 @@ from laglab_conformance.robot import (
 from laglab_conformance.services import SERVICES
 from laglab_conformance.session import DoesNotApplyError, NoReactionError
 from laglab_conformance.stamps import STAMPED, no_earlier, tick_comes_first
-from laglab_protocol.framing.frame import Frame
-from laglab_protocol.messages.loop import Tick
-from laglab_protocol.plans import Planned
+from laglab_protocol import Frame, Planned, Tick
 
 NEVER = 10**6
 """[ticks] What is planned for so much later never comes into force."""

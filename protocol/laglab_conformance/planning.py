@@ -3,7 +3,7 @@
 from laglab_conformance.items import Item
 from laglab_conformance.robot import CREEP, RobotSession, creep, creeps, measurements
 from laglab_conformance.session import DoesNotApplyError, NoReactionError
-from laglab_protocol.plans import Planned
+from laglab_protocol import Planned
 
 LENGTH = 100
 """Ticks of our plans, in several frames."""

@@ -11,22 +11,24 @@ from msgspec.structs import replace
 from laglab_conformance.forge import Forged
 from laglab_conformance.items import Item, refused
 from laglab_conformance.session import DoesNotApplyError, M, NoReactionError, Session, Waits
-from laglab_protocol.endpoints import Endpoint
-from laglab_protocol.framing.frame import Frame
-from laglab_protocol.messages.base import Message
-from laglab_protocol.messages.loop import (
+from laglab_protocol import (
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
     STATION_COMPONENT,
+    STATION_HEARTBEAT,
     STATION_SYSTEM,
     Applied,
     Command,
+    CommandAck,
+    CommandLong,
+    Endpoint,
+    Frame,
     Measurement,
+    Message,
     Recall,
     Settings,
     Tick,
 )
-from laglab_protocol.messages.standard import STATION_HEARTBEAT, CommandAck, CommandLong
 
 Batch = list[Measurement | Applied]
 

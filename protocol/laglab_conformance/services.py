@@ -2,16 +2,16 @@
 
 from laglab_conformance.items import Item
 from laglab_conformance.robot import RobotSession
-from laglab_protocol.dialect.generated import laglab as mavlink
-from laglab_protocol.messages.base import Message
-from laglab_protocol.messages.standard import (
+from laglab_protocol import (
     AutopilotVersion,
     Heartbeat,
+    Message,
     ParamRequestList,
     ParamRequestRead,
     ParamValue,
     Ping,
 )
+from laglab_protocol.dialect.generated import laglab as mavlink
 
 NO_SUCH_COMMAND = 65_000
 

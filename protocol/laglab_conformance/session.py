@@ -7,14 +7,17 @@ from pathlib import Path
 from typing import NamedTuple, TypeVar
 
 from laglab_conformance.forge import Forged
-from laglab_protocol.endpoints import Endpoint
-from laglab_protocol.framing.frame import Frame
-from laglab_protocol.framing.receiver import Receiver
-from laglab_protocol.listener import Listener
-from laglab_protocol.messages.base import Message
-from laglab_protocol.messages.loop import End
-from laglab_protocol.signing.keys import read_key
-from laglab_protocol.signing.signature import Signer, Verifier
+from laglab_protocol import (
+    End,
+    Endpoint,
+    Frame,
+    Listener,
+    Message,
+    Receiver,
+    Signer,
+    Verifier,
+    read_key,
+)
 
 M = TypeVar("M", bound=Message)
 

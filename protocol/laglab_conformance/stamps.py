@@ -13,7 +13,7 @@ from laglab_conformance.robot import (
     measurements,
 )
 from laglab_conformance.session import DoesNotApplyError
-from laglab_protocol.messages.loop import NO_COMMAND, Applied, Measurement, Tick
+from laglab_protocol import NO_COMMAND, Applied, Measurement, Tick
 
 RARE = 0.05
 """The share of the ticks of which a line may lose something."""

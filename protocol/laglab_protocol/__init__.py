@@ -1,6 +1,7 @@
 """The link: the dialect's messages, their frames, and the endpoints they travel between."""
 
 from laglab_protocol.endpoints import (
+    BITS_PER_BYTE,
     Address,
     Endpoint,
     Link,
@@ -22,7 +23,7 @@ from laglab_protocol.errors import (
     TlogError,
     UnsignedLinkError,
 )
-from laglab_protocol.framing.frame import Frame, Refusal, decode
+from laglab_protocol.framing.frame import SIGNED, START, Frame, Refusal, decode
 from laglab_protocol.framing.receiver import Counters, Receiver, frames_in
 from laglab_protocol.framing.sender import Sender
 from laglab_protocol.listener import Listener
@@ -52,6 +53,7 @@ from laglab_protocol.messages.geographic import (
     SetGpsGlobalOrigin,
     SetHomePosition,
 )
+from laglab_protocol.messages.layout import LAYOUT_OF_ID, layout_of
 from laglab_protocol.messages.loop import (
     LONGEST_PLAN,
     NO_COMMAND,
@@ -125,12 +127,14 @@ from laglab_protocol.refusals import Refusals
 from laglab_protocol.restart import Restart
 from laglab_protocol.settings import differences, refuse_other_sample_time
 from laglab_protocol.signing.keys import Codec, make_key, read_key, refuse_open_door
-from laglab_protocol.signing.signature import EVERY_MESSAGE
+from laglab_protocol.signing.signature import EVERY_MESSAGE, Signer, Verifier, signing_time
 from laglab_protocol.timing import Durations, Quantiles
 from laglab_protocol.tlog import read_tlog, tlog_record
 
 __all__ = [
+    "BITS_PER_BYTE",
     "EVERY_MESSAGE",
+    "LAYOUT_OF_ID",
     "LEAST_BYTES",
     "LONGEST_PLAN",
     "MAV_SEVERITY_EMERGENCY",
@@ -144,6 +148,8 @@ __all__ = [
     "ROBOT",
     "ROBOT_COMPONENT",
     "ROBOT_SYSTEM",
+    "SIGNED",
+    "START",
     "STATION",
     "STATION_COMPONENT",
     "STATION_HEARTBEAT",
@@ -237,6 +243,7 @@ __all__ = [
     "SetMode",
     "Settings",
     "SettingsError",
+    "Signer",
     "Speeds",
     "Statustext",
     "SysStatus",
@@ -245,10 +252,12 @@ __all__ = [
     "Timesync",
     "TlogError",
     "UnsignedLinkError",
+    "Verifier",
     "decode",
     "differences",
     "frames_in",
     "frames_of",
+    "layout_of",
     "make_key",
     "message_type",
     "open_endpoint",
@@ -257,5 +266,6 @@ __all__ = [
     "refuse_open_door",
     "refuse_other_sample_time",
     "require_terminals",
+    "signing_time",
     "tlog_record",
 ]

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from laglab_control import RobotModel
+from laglab_control import MEMORY, RobotModel
 from laglab_fmu import RobotParameters
+from laglab_gateway.memory import KEPT
 
 
 def test_the_filters_believe_of_the_robot_what_the_fmu_is() -> None:
@@ -13,6 +14,10 @@ def test_the_filters_believe_of_the_robot_what_the_fmu_is() -> None:
         assert getattr(model, name) == getattr(robot, name), name
     np.testing.assert_array_equal(model.Q, robot.wheel_noise_variance * np.eye(2))
     np.testing.assert_array_equal(model.R, np.diag(robot.measurement_variance))
+
+
+def test_the_robot_recalls_what_the_station_still_asks_for() -> None:
+    assert KEPT == MEMORY
 
 
 def test_the_defaults_are_the_papers() -> None:

@@ -1,11 +1,20 @@
 """Estimators: pure functions over immutable states, each step under the number of its equation."""
 
 from laglab_control.estimators.backdated import Backdated
+from laglab_control.estimators.brought import METHODS
 from laglab_control.estimators.calibrating_ekf import CalibratingEkf
 from laglab_control.estimators.delayed_ekf import DelayedEkf
 from laglab_control.estimators.ekf import Ekf
 from laglab_control.estimators.family import ESTIMATORS, EstimatorKind, estimator_kind
-from laglab_control.estimators.interface import Applied, Calibration, Estimator, Measured, State
+from laglab_control.estimators.interface import (
+    Applied,
+    Calibration,
+    Estimator,
+    Measured,
+    State,
+    claim_of,
+    pose_of,
+)
 from laglab_control.estimators.kalman import Innovation
 from laglab_control.estimators.parameters import Parameters, Taken
 from laglab_control.estimators.popf import Popf
@@ -18,6 +27,7 @@ from laglab_control.estimators.windows import ReplayedInputs, RigidMotions
 
 __all__ = [
     "ESTIMATORS",
+    "METHODS",
     "Applied",
     "Backdated",
     "CalibratingEkf",
@@ -39,5 +49,7 @@ __all__ = [
     "Taken",
     "TuePredictor",
     "WheelScales",
+    "claim_of",
     "estimator_kind",
+    "pose_of",
 ]

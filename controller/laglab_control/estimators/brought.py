@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from laglab_control.errors import ControlError
+from laglab_control.errors import ControlError, PluginFailedError
 from laglab_control.estimators.interface import (
     Applied,
     Calibration,
@@ -17,7 +17,7 @@ from laglab_control.estimators.interface import (
 )
 from laglab_control.estimators.kalman import Innovation
 from laglab_control.model import Matrix, Vector
-from laglab_control.plugins import Maker, PluginFailedError, called, made, refuse_misfit, shown
+from laglab_control.plugins import Maker, called, made, refuse_misfit, shown
 from laglab_control.robot import RobotModel, Ways
 
 METHODS = {

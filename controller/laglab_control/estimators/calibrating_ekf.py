@@ -13,6 +13,7 @@ from laglab_control.estimators.interface import Applied, Calibration, Estimator,
 from laglab_control.estimators.kalman import Belief, Innovation
 from laglab_control.estimators.parameters import Parameters
 from laglab_control.model import Matrix, Vector
+from laglab_control.past.memory import MEMORY
 from laglab_control.robot import RobotModel, Ways
 
 
@@ -54,7 +55,7 @@ class CalibratingEkf(Estimator[CalibratingState]):
 
     robot: RobotModel
     parameters: Parameters
-    memory: int = 1024
+    memory: int = MEMORY
     tolerance: float = 0.01
 
     def start(self, x: Vector, P: Matrix) -> CalibratingState:

@@ -11,6 +11,7 @@ from laglab_control.estimators.kalman import Belief, Innovation
 from laglab_control.estimators.windows import Windows
 from laglab_control.model import Matrix, Model, Vector
 from laglab_control.past.log import Log, append, cut, logged
+from laglab_control.past.memory import MEMORY
 from laglab_control.past.sliding import SlidingProduct
 
 W = TypeVar("W")
@@ -65,7 +66,7 @@ class DelayedEkf(Estimator[DelayedState[W]]):
 
     model: Model
     windows: Windows[W]
-    memory: int = 1024
+    memory: int = MEMORY
 
     def start(self, x: Vector, P: Matrix) -> DelayedState[W]:
         """The prior of tick 0."""

@@ -10,6 +10,7 @@ from laglab_control.estimators.kalman import Belief, Innovation, gain
 from laglab_control.model import Matrix, Model, Vector, identity, symmetric
 from laglab_control.past.history import History
 from laglab_control.past.log import logged
+from laglab_control.past.memory import MEMORY
 from laglab_control.past.sliding import SlidingProduct
 
 
@@ -79,7 +80,7 @@ class Popf(Estimator[PopfState]):
     model: Model
     innovation_at_k: bool = False
     covariance_at_k: bool = False
-    memory: int = 1024
+    memory: int = MEMORY
 
     def start(self, x: Vector, P: Matrix) -> PopfState:
         """The prior of tick 0."""

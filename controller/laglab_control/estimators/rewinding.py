@@ -8,6 +8,7 @@ from laglab_control.estimators.interface import Applied, Estimator, Measured, St
 from laglab_control.estimators.kalman import Innovation
 from laglab_control.model import Matrix, Vector
 from laglab_control.past.log import Log, append, cut, logged
+from laglab_control.past.memory import MEMORY
 
 S = TypeVar("S", bound=State)
 
@@ -53,7 +54,7 @@ class Rewinding(Estimator[RewindingState[S]]):
     """
 
     estimator: Estimator[S]
-    memory: int = 1024
+    memory: int = MEMORY
 
     def start(self, x: Vector, P: Matrix) -> RewindingState[S]:
         """The prior of tick 0."""

@@ -17,10 +17,8 @@ from laglab_control.estimators.kalman import Innovation
 from laglab_control.limits import Positive, check
 from laglab_control.model import Matrix, Vector
 from laglab_control.past.log import Log, append, logged
+from laglab_control.past.memory import MEMORY
 from laglab_control.robot import RobotModel
-
-MEMORY = 1024
-"""Ticks by which a measurement may be late."""
 
 
 class TueState(NamedTuple):

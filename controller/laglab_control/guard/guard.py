@@ -34,13 +34,12 @@ from laglab_control.guard.evidence import (
 from laglab_control.guard.seen import Seen
 from laglab_control.model import Matrix, Vector
 from laglab_control.past.log import Log, append, logged
+from laglab_control.past.memory import MEMORY
 from laglab_control.robot import RobotModel, Ways
 
 LOCATING = 100
 """Measurements by which the pose is found again: P is then R/100, which every filter can start
 from (`popf` diverges from a P_0 as large as R, docs/theory.md)."""
-MEMORY = 1024
-"""Ticks for which inputs are kept."""
 
 
 class Alarm(NamedTuple):

@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-MEMORY = 1024
-"""Ticks; what is older counts as seen."""
+from laglab_control.past.memory import MEMORY
+
 ALL = (1 << MEMORY) - 1
 
 

@@ -5,13 +5,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
-from laglab_control.errors import ConfigError
+from laglab_control.errors import ConfigError, PluginFailedError
 from laglab_control.laws.interface import Demand, Law
 from laglab_control.laws.paths import Path
 from laglab_control.laws.tracking import TrackingLaw
 from laglab_control.motion import Way
 from laglab_control.plugins import (
-    PluginFailedError,
     called,
     find_plugin,
     made,

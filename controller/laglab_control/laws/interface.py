@@ -38,3 +38,7 @@ class Law(Protocol):
 def as_input(drive: Demand) -> Vector:
     """u = [v, omega] (2,) [m/s, rad/s]."""
     return np.array((drive.v, drive.omega))
+
+
+STAND = as_input(STAND_STILL)
+"""The input before any command is in force."""

@@ -17,6 +17,11 @@ from laglab_protocol.dialect.generated import laglab as generated
 from laglab_protocol.dialect.mavgen import carried_dialects
 from laglab_protocol.errors import DialectError
 
+__all__ = [
+    "Finding",
+    "lint",
+]
+
 PRIVATE_IDS = range(52100, 60000)
 """No published dialect uses these."""
 LARGEST_PAYLOAD = 255

@@ -9,6 +9,17 @@ from pathlib import Path
 
 from laglab_protocol.errors import DialectError
 
+__all__ = [
+    "GENERATED",
+    "LANGUAGES",
+    "carried_dialects",
+    "dialect_path",
+    "generate",
+    "generate_into",
+    "offer_to_pymavlink",
+    "place_in_pymavlink",
+]
+
 LANGUAGES = ("C", "C++11", "CS", "Java", "Python3", "Swift", "WLua")
 GENERATED = Path(__file__).parent / "generated" / "laglab.py"
 

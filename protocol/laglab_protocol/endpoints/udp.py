@@ -14,7 +14,7 @@ from laglab_protocol.endpoints.waiting import first_bytes
 from laglab_protocol.errors import EndpointError, NoSuchPortError, PortBusyError
 from laglab_protocol.ration import LEAST_BYTES, Ration
 
-LARGEST_DATAGRAM = 65535
+LARGEST_HEARD = 65535
 NOBODY_THERE = (ConnectionRefusedError, ConnectionResetError)
 """As Linux and as Windows say it, on the next call, of a datagram that found nobody."""
 
@@ -110,7 +110,7 @@ class UdpIn(_Udp):
 
     def _read(self) -> bytes | None:
         if self._apart is not None:
-            data = self._read_from(self._apart, LARGEST_DATAGRAM)
+            data = self._read_from(self._apart, LARGEST_HEARD)
             if data is not None or not self._is_strangers_turn():
                 return data
         data = self._read_from(self._socket, STRANGERS_DATAGRAM)
@@ -128,7 +128,7 @@ class UdpIn(_Udp):
 
     def _read_from(self, queue: socket.socket, size: int) -> bytes | None:
         try:
-            data, self.sender = queue.recvfrom(LARGEST_DATAGRAM)
+            data, self.sender = queue.recvfrom(LARGEST_HEARD)
         except (BlockingIOError, *NOBODY_THERE):
             return None
         return data[:size]
@@ -181,7 +181,7 @@ class UdpOut(_Udp):
 
     def _read(self) -> bytes | None:
         try:
-            return self._socket.recv(LARGEST_DATAGRAM)
+            return self._socket.recv(LARGEST_HEARD)
         except (BlockingIOError, *NOBODY_THERE):
             return None  # a refusal means that an earlier datagram found nobody; it is used up
 

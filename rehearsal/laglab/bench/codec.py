@@ -7,12 +7,9 @@ from pathlib import Path
 
 from laglab.bench.harness import Bench, Contest, Turn, microseconds, timed
 from laglab.c_library import c_library, new_folder
+from laglab_protocol import Measurement, Receiver, Sender, Signer, Verifier
 from laglab_protocol.dialect.generated import laglab as pymavlink
 from laglab_protocol.dialect.mavgen import dialect_path, generate
-from laglab_protocol.framing.receiver import Receiver
-from laglab_protocol.framing.sender import Sender
-from laglab_protocol.messages.loop import Measurement
-from laglab_protocol.signing.signature import Signer, Verifier
 
 FIELDS = (1.5, -2.0, 3.125, 0.5, -1.7, 1_234_567, 1_234_537)
 """The fields of a LAGLAB_MEASUREMENT, whose frame has 60 bytes."""

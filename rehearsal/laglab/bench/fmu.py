@@ -12,13 +12,17 @@ import numpy as np
 from laglab.bench.harness import Bench, Contest, Progress, Turn, microseconds, timed
 from laglab.bench.result import Figure, Result
 from laglab.c_library import c_library, new_folder
-from laglab_fmu.archive.contents import c_files
-from laglab_fmu.fleet import Fleet
+from laglab_fmu import (
+    INPUTS,
+    OUTPUTS,
+    VERSIONS,
+    Fleet,
+    Robot,
+    RobotParameters,
+    fmu_path,
+)
+from laglab_fmu.archive import c_files
 from laglab_fmu.models import ROBOT
-from laglab_fmu.parameters import RobotParameters
-from laglab_fmu.robot import Robot
-from laglab_fmu.slave import VERSIONS, fmu_path
-from laglab_fmu.stepper import INPUTS, OUTPUTS
 
 SPEEDS = (4.0, 9.0)
 SAMPLE_TIME = RobotParameters.sample_time

@@ -7,8 +7,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from laglab_fmu import c_compiler
-from laglab_fmu.compiler import compile_library, host_platform
+from laglab_fmu import c_compiler, compile_library, host_platform
 
 
 def new_folder(stack: ExitStack) -> Path:

@@ -9,10 +9,9 @@ from laglab.check.subject import KINDS, SHIPPED, Kind, maker_of
 from laglab.runs.plant import open_plant
 from laglab.runs.plant.brought import Watched
 from laglab.scenario import Scenario, changed
-from laglab_control import ESTIMATORS, Circle, ConfigError, Law, PolarLaw
-from laglab_control.estimators.family import estimator_kind
+from laglab_control import ESTIMATORS, Circle, ConfigError, Law, PolarLaw, find_plugin
+from laglab_control.estimators import estimator_kind
 from laglab_control.laws import brought_law, tracking_law
-from laglab_control.plugins import find_plugin
 
 Options = Mapping[str, object]
 

@@ -21,7 +21,7 @@ from laglab_control import (
     State,
     chi_square_bound,
 )
-from laglab_control.estimators.interface import claim_of, pose_of
+from laglab_control.estimators import claim_of, pose_of
 
 Array = NDArray[np.float64]
 MODEL = RobotModel()

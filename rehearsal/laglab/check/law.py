@@ -6,8 +6,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from laglab.check.finding import INTERFACE, Check, need
-from laglab_control import Law
-from laglab_control.motion import Way
+from laglab_control import Law, Way
 
 GOAL = (0.5, -0.25, 0.3)
 STEPS = 200

@@ -1,15 +1,14 @@
 """What is to be checked: found by its name, and known by its methods."""
 
 from collections.abc import Iterator, Mapping
-from importlib.metadata import entry_points
 from typing import Literal
 
 from laglab.errors import ScenarioError
 from laglab.runs.plant.brought import METHODS as OF_PLANTS
 from laglab.scenario.tables.plant import SHIPPED as PLANTS
 from laglab_control import ESTIMATORS, LAWS, find_plugin, is_module_class
-from laglab_control.estimators.brought import METHODS as OF_ESTIMATORS
-from laglab_control.plugins import Group, Maker, installed_plugins
+from laglab_control.estimators import METHODS as OF_ESTIMATORS
+from laglab_control.plugins import Group, Maker, plugin_names
 
 Kind = Literal["estimator", "law", "plant"]
 KINDS: Mapping[Kind, Group] = {
@@ -51,7 +50,7 @@ def kind_of(name: str, told: Kind | None) -> Kind:
 def _known() -> str:
     """All names."""
     names = [name for names in SHIPPED.values() for name in names]
-    plugins = [each.name for group in KINDS.values() for each in installed_plugins(group)]
+    plugins = [name for group in KINDS.values() for name in plugin_names(group)]
     return ", ".join((*names, *plugins, "or module:Class"))
 
 
@@ -59,7 +58,7 @@ def _by_name(name: str) -> Iterator[Kind]:
     if is_module_class(name):
         return
     for kind, group in KINDS.items():
-        if name in SHIPPED[kind] or name in entry_points(group=group).names:
+        if name in SHIPPED[kind] or name in plugin_names(group):
             yield kind
 
 

@@ -16,6 +16,8 @@ from laglab_gateway import (
     TimingRow,
     TraceRow,
 )
+from laglab_protocol import START
+from laglab_protocol.dialect.generated import laglab as mavlink
 
 PERIOD = 0.05
 """[s] between two datagrams."""
@@ -25,7 +27,8 @@ MOST_TICKS, MOST_OTHERS = 100, 300
 MOST_FRAMES = 100
 """Of a station alone, which needs them all: what has no room goes into the next datagram."""
 
-STATUSTEXT = (253).to_bytes(3, "little")
+STATUSTEXT = mavlink.MAVLINK_MSG_ID_STATUSTEXT.to_bytes(3, "little")
+"""In a frame's head."""
 
 T = TypeVar("T")
 
@@ -109,7 +112,7 @@ class Feed(Recorder):
 
 def _is_text(frame: bytes) -> bool:
     """By its header: nothing is decoded in the loop."""
-    return frame[:1] == b"\xfd" and frame[7:10] == STATUSTEXT
+    return frame[0] == START and frame[7:10] == STATUSTEXT
 
 
 def _last(rows: list[T]) -> list[T]:

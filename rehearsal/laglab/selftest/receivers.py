@@ -6,10 +6,9 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from laglab.c_library import c_library, new_folder
-from laglab_protocol import Frame, Message, Receiver, message_type
+from laglab_protocol import LAYOUT_OF_ID, Frame, Message, Receiver, message_type
 from laglab_protocol.dialect.generated import laglab as pymavlink
 from laglab_protocol.dialect.mavgen import dialect_path, generate
-from laglab_protocol.messages.layout import LAYOUT_OF_ID
 
 CHECKED = frozenset(layout.name for layout in LAYOUT_OF_ID.values())
 """pymavlink also gives bad data, and unknown messages with any CRC, by other names."""

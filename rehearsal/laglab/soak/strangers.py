@@ -21,8 +21,8 @@ from laglab_protocol import (
     ParamRequestList,
     Ping,
     Sender,
+    Signer,
 )
-from laglab_protocol.signing.signature import Signer
 
 ANOTHER_KEY = bytes(32)
 HEARTBEAT = Heartbeat(0, 6, 8, 0, 4, 3)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -13,8 +13,19 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+Outcome = TypeVar("Outcome")
 Share = Callable[[str, str], tuple[float, str]]
 """Called with a row and a column: gives the share of the runs, and what is written below it."""
+
+
+def by_pair(
+    outcomes: Iterable[Outcome], pair: Callable[[Outcome], tuple[str, str]]
+) -> dict[tuple[str, str], list[Outcome]]:
+    """All runs of each row and column, in the order in which these come."""
+    runs: dict[tuple[str, str], list[Outcome]] = {}
+    for outcome in outcomes:
+        runs.setdefault(pair(outcome), []).append(outcome)
+    return runs
 
 
 def draw_shares(

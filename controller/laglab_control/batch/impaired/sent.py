@@ -7,8 +7,8 @@ from laglab_control.batch.impaired.past import Past, Rows
 from laglab_control.batch.impaired.timetable import Tokens, Whole
 from laglab_control.batch.robots import Robots, composed
 from laglab_control.batch.rows import Belief, Pose, Row, Speeds, headings
-from laglab_control.flight import MEMORY
 from laglab_control.motion import Motion, Way
+from laglab_control.past import MEMORY
 
 MOTION = 9
 """Rows of one."""
@@ -25,7 +25,7 @@ class Sent:
 
     def __init__(self, robots: Robots, count: int, ticks: int, reach: int) -> None:
         """`reach`: how many ticks back a stretch begins at most."""
-        self._robots, self._everybody, self._reach = robots, np.arange(count), reach
+        self._robots, self._everybody = robots, np.arange(count)
         self._speeds = Past(ticks, 2, count)
         self._led = Past(reach + 2, MOTION + 2, count)
         standing = robots.motion(Speeds(np.zeros(count), np.zeros(count)))

@@ -4,6 +4,7 @@ import re
 from typing import NamedTuple
 
 from laglab_protocol import (
+    BITS_PER_BYTE,
     NO_PROBE,
     PROBE_FILLER,
     PROBE_LAGS,
@@ -21,8 +22,6 @@ from laglab_protocol import (
 TICK = 1000
 """What is said at this tick is as long as at most others: small numbers travel in fewer bytes."""
 BAUD = re.compile(r"^(?:serial:|/).*[:,](\d+)$")
-BITS_PER_BYTE = 10
-"""8N1: a start bit, eight of data, a stop bit."""
 NONE = (NO_PROBE,) * len(PROBE_LAGS)
 NEVER = (0,) * len(PROBE_LAGS)
 SAID_BY_THE_ROBOT: tuple[Message, ...] = (

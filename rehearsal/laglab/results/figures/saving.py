@@ -41,9 +41,7 @@ def _format(path: Path) -> str:
     return path.suffix[1:].lower()
 
 
-def save_figure(draw_it: Callable[[], Figure], directory: Path) -> bool:
-    """Draw a run's figure beside its other results; False where there is no matplotlib."""
-    if find_spec("matplotlib") is None:
-        return False
-    save(draw_it(), directory / FIGURE_FILE)
-    return True
+def save_figure(draw_it: Callable[[], Figure], directory: Path) -> None:
+    """Draw a run's figure beside its other results, where there is matplotlib."""
+    if find_spec("matplotlib") is not None:
+        save(draw_it(), directory / FIGURE_FILE)

@@ -5,10 +5,11 @@ from pathlib import Path
 
 from laglab.results.station.glance import StationGlance
 from laglab.results.station.heard import heard_ticks, origin
+from laglab_control import MEMORY
 from laglab_gateway import TLOG_FILE, FileRecorder, Recorder, TraceRow
 from laglab_station import Onlooker, SessionTick, read_session
 
-LATEST = 1024
+LATEST = MEMORY
 """Ticks that a row waits for its measurement."""
 
 Cells = dict[str, float | None]

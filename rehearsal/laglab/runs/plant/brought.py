@@ -7,16 +7,8 @@ from typing import Any, Self
 from laglab.runs.plant.placing import pose_asked
 from laglab.scenario import Scenario
 from laglab.scenario.tables.plant import SHIPPED
-from laglab_control.plugins import (
-    Maker,
-    PluginFailedError,
-    at_tick,
-    called,
-    find_plugin,
-    made,
-    refuse_misfit,
-    shown,
-)
+from laglab_control import PluginFailedError, at_tick, find_plugin
+from laglab_control.plugins import Maker, called, made, refuse_misfit, shown
 from laglab_gateway import Reading
 
 METHODS = {"read": (), "step": ("v", "omega"), "place": ("x", "y", "theta")}

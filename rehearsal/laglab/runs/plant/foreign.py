@@ -10,9 +10,8 @@ from laglab.runs.plant.sensor import NoisySensor
 from laglab.runs.plant.shipped import wheel_speeds
 from laglab.scenario import Scenario
 from laglab.scenario.tables.plant import POSE_NAMES
-from laglab_fmu import fmu_path
+from laglab_fmu import INTEGRATIONS, fmu_path
 from laglab_fmu.foreign import FmuFile, ForeignRobot, Wiring, check
-from laglab_fmu.parameters import INTEGRATIONS
 from laglab_gateway import Reading, UnplaceableError
 
 NEAR = 1e-9

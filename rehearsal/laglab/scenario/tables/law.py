@@ -7,8 +7,7 @@ from pydantic import AfterValidator, Field, model_validator
 from laglab.scenario.paths import KINDS, resolved
 from laglab.scenario.tables.names import known_law, offered
 from laglab.scenario.tables.table import Options, OptionsTable, Table, as_in
-from laglab_control import LAWS, PolarLaw, SpeedLimits
-from laglab_control.limits import limits
+from laglab_control import LAWS, PolarLaw, SpeedLimits, limits
 from laglab_gateway.values import Number, described
 
 LawName = Annotated[str, AfterValidator(known_law), offered(LAWS)]

@@ -5,12 +5,14 @@
 
 from collections.abc import Iterable
 from functools import cache
-from importlib.metadata import entry_points
 
 from pydantic import WithJsonSchema
 
 from laglab_control import ESTIMATORS, LAWS, is_module_class
-from laglab_control.plugins import Group
+from laglab_control.plugins import Group, plugin_names
+
+_installed = cache(plugin_names)
+"""Looked up once: a study asks as often as it has cells."""
 
 
 def known(group: Group, name: str, shipped: Iterable[str]) -> str:
@@ -21,12 +23,6 @@ def known(group: Group, name: str, shipped: Iterable[str]) -> str:
         return name
     listed = ", ".join((*shipped, *_installed(group)))
     raise ValueError(f"must be one of {listed}, or module:Class, not {name!r}")
-
-
-@cache
-def _installed(group: Group) -> list[str]:
-    """Looked up once: a study asks as often as it has cells."""
-    return sorted(entry_points(group=group).names)
 
 
 def known_estimator(name: str) -> str:

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
-from laglab_control.limits import limits
+from laglab_control import limits
 from laglab_gateway.values import Number, saying
 
 

@@ -20,7 +20,8 @@ from laglab.scenario import Scenario
 from laglab.studies.many.schedule import schedule_of
 from laglab_control.batch import BATCHED, BatchController, Pose, Speeds, Symmetric
 from laglab_control.batch.impaired import ImpairedController, Timetable
-from laglab_gateway.drive import FASTEST, Safety
+from laglab_gateway import Safety
+from laglab_gateway.drive import FASTEST
 
 if TYPE_CHECKING:
     from laglab_fmu import Fleet

@@ -14,12 +14,10 @@ import numpy as np
 
 from laglab.runs.robot_side import link_fates
 from laglab.scenario import Scenario
+from laglab_control import MEMORY, Applied, Told, Vector
 from laglab_control.batch.impaired import Arrivals, Course, Missing, News, Tokens
-from laglab_control.estimators.interface import Applied
-from laglab_control.flight import MEMORY, Told, learned
-from laglab_control.model import Vector
-from laglab_gateway.drive import Drive, Safety, follow, rejection, speeds, supervise
-from laglab_gateway.link.channel import Channel
+from laglab_gateway import Channel, Safety
+from laglab_gateway.drive import Drive, follow, rejection, speeds, supervise
 from laglab_gateway.memory import Owed, SpeedMemory
 from laglab_protocol import (
     ROBOT,
@@ -29,8 +27,7 @@ from laglab_protocol import (
     Recall,
 )
 from laglab_protocol import Applied as Recalled
-from laglab_station.hearing import echoes, recalled
-from laglab_station.recalling import Questions
+from laglab_station import Questions, echoes, recalled
 
 Token = tuple[float, float]
 """The tick of a command, and the share of it that is in force."""
@@ -143,7 +140,7 @@ class _Station:
             self._believed.append(self._sent(tick - 1))
         if came:
             told = echoes(measurements, 0, tick)
-            self._told, inputs = learned(self._told, tick, told, recalled(answers, 0, tick))
+            self._told, inputs = self._told.after(tick, told, recalled(answers, 0, tick))
             self._put_right(tick, inputs, record)
         self._arrive(tick, measurements, record)
         record.keep(self._told, self._delay)

@@ -10,7 +10,7 @@ from rich.table import Table
 
 from laglab.results.figures import Width
 from laglab.studies.rivals.trials import Fared
-from laglab.studies.shares import draw_shares
+from laglab.studies.shares import by_pair, draw_shares
 from laglab.tables import plain_table
 
 if TYPE_CHECKING:
@@ -43,10 +43,8 @@ Scores = Mapping[tuple[str, str], Score]
 
 def scores(outcomes: Sequence[Fared]) -> Scores:
     """Of all that there are."""
-    runs: dict[tuple[str, str], list[Fared]] = {}
-    for one in outcomes:
-        runs.setdefault((one.link, one.strategy), []).append(one)
-    return {key: _score(ones) for key, ones in runs.items()}
+    pairs = by_pair(outcomes, lambda one: (one.link, one.strategy))
+    return {pair: _score(ones) for pair, ones in pairs.items()}
 
 
 def _score(ones: Sequence[Fared]) -> Score:

@@ -1,6 +1,5 @@
 """The ways to live with a link, beside each other on the same links."""
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
@@ -8,17 +7,19 @@ import numpy as np
 from msgspec import Struct
 
 from laglab.interface import run
+from laglab.link.fitting import bound_for
+from laglab.link.measured import Flow
 from laglab.results.numbers import robot_pose
 from laglab.runs.robot_side import link_fates
 from laglab.scenario import Overrides, Scenario, both_ways, changed
 from laglab.studies.judged import judged_run
 from laglab.studies.workers import shared_out
-from laglab_gateway import FateKind
+from laglab_gateway import DIRECTIONS, FateKind, Fates
 
 PLAN = 45
 """[ticks] How far the plans reach: their frames still fit into one datagram."""
-IN_TIME = 0.99
-"""The share of the frames that are to come before the bound of the play-out."""
+LATE = 0.01
+"""The share of the frames that may come after the bound of the play-out."""
 MOST_TRIED = 5000
 """Frames by which the bounds are found."""
 A_FRAME = bytes(64)
@@ -125,19 +126,23 @@ def _met(scenario: Scenario, link: Overrides, strategy: str, number: int) -> Sce
 
 def bounds(scenario: Scenario) -> Overrides:
     """Of a play-out for which all but a hundredth of the frames that get through are in time."""
-    Ts, link = scenario.sample_time, scenario.link
-    own = {"command": link.command_delay, "measurement": link.measurement_delay}
-    fates = link_fates(scenario)
+    Ts, link, fates = scenario.sample_time, scenario.link, link_fates(scenario)
+    ticks = min(scenario.must_end(), MOST_TRIED)
     found: dict[str, object] = {}
-    for direction, delay in own.items():
-        ticks = range(min(scenario.must_end(), MOST_TRIED)) if direction in fates else ()
-        tried = [fates[direction].of(k, k * Ts, A_FRAME) for k in ticks]  # type: ignore[index]
-        extra = [
-            copy.extra for copies in tried for copy in copies if copy.kind is FateKind.DELIVERED
-        ]
-        late = math.ceil(np.quantile(extra, IN_TIME) / Ts - 1e-9) if extra else 0
+    for direction, delay in zip(
+        DIRECTIONS, (link.command_delay, link.measurement_delay), strict=True
+    ):
+        late = _late(fates[direction], ticks, Ts) if direction in fates else 0
         found[f"link.playout.{direction}"] = delay + late
     return found
+
+
+def _late(fates: Fates, ticks: int, Ts: float) -> int:
+    """By how many ticks frames are late that are in time."""
+    tried = [fates.of(k, k * Ts, A_FRAME) for k in range(ticks)]
+    extra = [copy.extra for copies in tried for copy in copies if copy.kind is FateKind.DELIVERED]
+    flow = Flow(Ts * np.arange(len(extra)), np.array(extra, dtype=np.float64), len(A_FRAME))
+    return bound_for(flow, Ts, LATE)
 
 
 def outcomes(jobs: Sequence[Trial], workers: int) -> Iterator[Fared]:

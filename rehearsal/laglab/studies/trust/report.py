@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from rich.table import Table
 
-from laglab.studies.shares import draw_shares
+from laglab.studies.shares import by_pair, draw_shares
 from laglab.studies.trust.trials import LOOKED_AT_AFTER, Fared
 from laglab.tables import plain_table
 
@@ -41,10 +41,8 @@ Scores = Mapping[tuple[str, str], Score]
 
 def scores(fared: Sequence[Fared]) -> Scores:
     """In the order in which they come."""
-    runs: dict[tuple[str, str], list[Fared]] = {}
-    for one in fared:
-        runs.setdefault((one.condition, one.station), []).append(one)
-    return {key: _score(ones) for key, ones in runs.items()}
+    pairs = by_pair(fared, lambda one: (one.condition, one.station))
+    return {pair: _score(ones) for pair, ones in pairs.items()}
 
 
 def _score(ones: Sequence[Fared]) -> Score:

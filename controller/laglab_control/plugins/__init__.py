@@ -1,0 +1,31 @@
+"""Plug-ins: what users bring is found by its name, made, and called as strangers' code is."""
+
+from laglab_control.plugins.calling import at_tick, called, made, refuse_misfit
+from laglab_control.plugins.finding import (
+    Group,
+    Maker,
+    Plugin,
+    find_plugin,
+    installed_plugins,
+    is_module_class,
+    plugin_names,
+    source_of,
+)
+from laglab_control.plugins.wording import first_line, shown
+
+__all__ = [
+    "Group",
+    "Maker",
+    "Plugin",
+    "at_tick",
+    "called",
+    "find_plugin",
+    "first_line",
+    "installed_plugins",
+    "is_module_class",
+    "made",
+    "plugin_names",
+    "refuse_misfit",
+    "shown",
+    "source_of",
+]
