@@ -129,9 +129,8 @@ def bounds(scenario: Scenario) -> Overrides:
     Ts, link, fates = scenario.sample_time, scenario.link, link_fates(scenario)
     ticks = min(scenario.must_end(), MOST_TRIED)
     found: dict[str, object] = {}
-    for direction, delay in zip(
-        DIRECTIONS, (link.command_delay, link.measurement_delay), strict=True
-    ):
+    delays = link.command_delay, link.measurement_delay
+    for direction, delay in zip(DIRECTIONS, delays, strict=True):
         late = _late(fates[direction], ticks, Ts) if direction in fates else 0
         found[f"link.playout.{direction}"] = delay + late
     return found
@@ -141,8 +140,8 @@ def _late(fates: Fates, ticks: int, Ts: float) -> int:
     """By how many ticks frames are late that are in time."""
     tried = [fates.of(k, k * Ts, A_FRAME) for k in range(ticks)]
     extra = [copy.extra for copies in tried for copy in copies if copy.kind is FateKind.DELIVERED]
-    flow = Flow(Ts * np.arange(len(extra)), np.array(extra, dtype=np.float64), len(A_FRAME))
-    return bound_for(flow, Ts, LATE)
+    sent = Ts * np.arange(len(extra), dtype=np.float64)
+    return bound_for(Flow(sent, np.array(extra, dtype=np.float64), len(A_FRAME)), Ts, LATE)
 
 
 def outcomes(jobs: Sequence[Trial], workers: int) -> Iterator[Fared]:
