@@ -58,14 +58,15 @@ def sweep(
     from laglab.studies.sweep.loading import load_study
     from laglab.studies.sweep.report import strangers_told, summary
     from laglab.studies.sweep.sweeping import work_off
-    from laglab.studies.sweep.work import check_study
+    from laglab.studies.sweep.work import checked_work
 
     chosen = load_study(study, dict(map(assignment, told or [])), seeds)
-    check_study(chosen, limit)
-    folder = Folder.made(out or Path("studies") / chosen.name, chosen)
+    place = out or Path("studies") / chosen.name
+    work = checked_work(chosen, None if force else Folder(place), limit)
+    folder = Folder.made(place, chosen)
     for line in strangers_told(chosen, folder):
         say(line)
-    work = work_off(chosen, folder, _workers(scheduler, workers), again=force)
+    work_off(chosen, folder, _workers(scheduler, workers), work, again=force)
     said = summary(chosen, folder, work)
     terminal().print(said, highlight=False)
     if report:

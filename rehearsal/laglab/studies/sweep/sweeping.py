@@ -15,7 +15,7 @@ from laglab.studies.sweep.folder import Folder
 from laglab.studies.sweep.loading import load_study
 from laglab.studies.sweep.result import StudyResult
 from laglab.studies.sweep.study import Study
-from laglab.studies.sweep.work import Work, check_study, work_left
+from laglab.studies.sweep.work import Work, checked_work
 from laglab.studies.workers import Executor, Processes, as_done
 
 AHEAD = 512
@@ -32,7 +32,7 @@ def swept(
 ) -> StudyResult:
     """As `sweep` says."""
     chosen = study if isinstance(study, Study) else load_study(str(study))
-    check_study(chosen, limit)
+    work = checked_work(chosen, None if out is None else Folder(Path(out)), limit)
     if out is None:
         folder = Folder.made(Path(mkdtemp(prefix="laglab-")), chosen)
         result = StudyResult.passing(chosen, folder, chosen.origin)
@@ -40,7 +40,7 @@ def swept(
         folder = Folder.made(Path(out), chosen)
         result = StudyResult(chosen, folder, chosen.origin)
     workers = Processes(0) if executor is None else nullcontext(executor)
-    work_off(chosen, folder, workers, progress)
+    work_off(chosen, folder, workers, work, progress)
     return result
 
 
@@ -48,17 +48,16 @@ def work_off(
     study: Study,
     folder: Folder,
     workers: AbstractContextManager[Executor],
+    work: Work,
     progress: bool = True,
     again: bool = False,
-) -> Work:
-    """Do what is left, or all of it `again`; says how much that was. Raises as `compute`."""
-    work = work_left(study, None if again else folder)
+) -> None:
+    """Do the work that is left, or all of it `again`. Raises as `compute`."""
     with (
         progress_of_study(study.name, work.runs, work.seconds, progress) as told,
         workers as executor,
     ):
         compute(study, folder, executor, told, again)
-    return work
 
 
 def compute(

@@ -61,15 +61,15 @@ def _check_robot(study: Study, cell: Cell) -> None:
         raise StudyError(f"{study.name}: with {cell.place}: {error}") from None
 
 
-def check_study(study: Study, limit: int = MOST_RUNS) -> None:
-    """Raises StudyError: there are too many runs, or one of them cannot be."""
+def checked_work(study: Study, folder: "Folder | None", limit: int = MOST_RUNS) -> Work:
+    """The same, of no more runs than `limit`. Raises StudyError."""
     if study.runs > limit:
         raise StudyError(
             f"{study.name}: {study.runs} runs ({study.points} points of the grid, "
             f"{len(study.seeds)} seeds), more than the limit of {limit}: take fewer values, or say "
             f"--limit {study.runs}"
         )
-    work_left(study)
+    return work_left(study, folder)
 
 
 def check(study: Study, cell: Cell) -> None:
