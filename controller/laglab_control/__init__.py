@@ -3,7 +3,7 @@
 A number in brackets, such as (28), is an equation of docs/theory.md, in this and every component.
 """
 
-from laglab_control.angle import wrap
+from laglab_control.angle import wrap, wrapped
 from laglab_control.chi_square import chi_square_bound
 from laglab_control.controller import (
     FAR,
@@ -149,4 +149,5 @@ __all__ = [
     "replay",
     "without_blind_guard",
     "wrap",
+    "wrapped",
 ]

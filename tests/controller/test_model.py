@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from laglab_control import RobotModel
+from laglab_control import RobotModel, wrap, wrapped
 
 coordinate = st.floats(-100, 100)
 poses = st.tuples(coordinate, coordinate, coordinate).map(np.array)
@@ -17,6 +17,18 @@ def slope(function, at):
     step = 1e-6
     columns = [(function(at + d) - function(at - d)) / (2 * step) for d in step * np.eye(len(at))]
     return np.stack(columns, axis=1)
+
+
+@given(st.lists(st.floats(-1e4, 1e4), min_size=1))
+def test_many_angles_are_wrapped_as_one_is(angles):
+    together = wrapped(np.array([*angles, np.pi, -np.pi, np.inf, np.nan]))
+    one_by_one = np.array([*map(wrap, angles), np.pi, np.pi, np.nan, np.nan])
+    apart = np.abs(together - one_by_one)
+    assert np.all(np.isclose(apart, 0, atol=1e-9) | np.isclose(apart, 2 * np.pi) | np.isnan(apart))
+    assert np.array_equal(np.isnan(together), np.isnan(one_by_one))
+    assert np.all(np.abs(together[np.isfinite(together)]) <= np.pi)
+    small = np.array([each for each in angles if abs(each) < 3])
+    assert np.array_equal(wrapped(small), small)
 
 
 @given(poses, inputs)

@@ -6,8 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from laglab_control.angle import wrapped
 from laglab_control.batch.matrices import Symmetric
-from laglab_control.batch.rows import Heading, Pose, Row, Speeds, headings, wrapped
+from laglab_control.batch.rows import Heading, Pose, Row, Speeds, headings
 from laglab_control.controller import StationConfig
 from laglab_control.errors import ConfigError
 from laglab_control.laws import PolarLaw, SpeedLimits

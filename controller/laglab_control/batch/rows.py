@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from laglab_control.angle import wrapped
 from laglab_control.model import Vector
 from laglab_control.motion import Motion, Way
 
@@ -25,13 +26,6 @@ class Speeds(NamedTuple):
 def pose_of(belief: Belief) -> Pose:
     """Without the covariance."""
     return Way(belief.x, belief.y, belief.theta)
-
-
-def wrapped(angle: Row) -> Row:
-    """The same angles in (-pi, pi]; NaN where one is not finite."""
-    remainder: Row = angle - 2 * np.pi * np.rint(angle * (0.5 / np.pi))
-    wrong = remainder <= -np.pi
-    return np.where(wrong, np.pi, remainder) if wrong.any() else remainder
 
 
 Heading = tuple[Row, Row]

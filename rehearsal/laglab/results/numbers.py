@@ -1,11 +1,10 @@
 """Numbers from traces: where the robot was, how far the estimate was off, whether it got there."""
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
 from laglab.results.summary import Errors
+from laglab_control import wrapped
 from laglab_gateway import Trace
 
 AXES = ("x", "y", "theta")
@@ -19,16 +18,6 @@ LAST_SECOND = 1.0
 Array = NDArray[np.float64]
 Goal = tuple[float, float, float] | Array
 """x [m], y [m], theta [rad]; or such a pose for each, shape (..., 3)."""
-
-
-def wrapped(angles: Array) -> Array:
-    """The same angles within half a turn of 0 [rad], of any shape; NaN where they are not finite.
-
-    So small ones stay what they are, to the bit.
-    """
-    with np.errstate(invalid="ignore"):
-        turned: Array = angles - math.tau * np.rint(angles / math.tau)
-    return turned
 
 
 def is_measured(trace: Trace) -> bool:

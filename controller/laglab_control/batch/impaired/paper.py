@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from laglab_control.angle import wrapped
 from laglab_control.batch.impaired.estimators import Estimator, Weighed
 from laglab_control.batch.impaired.factors import Factors
 from laglab_control.batch.impaired.past import Past, PastMatrices, Rows, Stack
@@ -13,7 +14,7 @@ from laglab_control.batch.impaired.timetable import ArrivalsNow, Whole
 from laglab_control.batch.matrices import Symmetric, covariance_of
 from laglab_control.batch.predicted import predicted
 from laglab_control.batch.robots import Compared, Estimate, Robots, estimate_of
-from laglab_control.batch.rows import Belief, headings, wrapped
+from laglab_control.batch.rows import Belief, headings
 from laglab_control.motion import Motion, Way
 
 IDENTITY = np.eye(3)

@@ -1,7 +1,7 @@
 """One HTML file of everything: what it shows, the scripts that move it, bokeh itself."""
 
 import platform
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.metadata import version
 from importlib.resources import files
@@ -81,18 +81,7 @@ def html(page: Page, panels: Sequence[Panel]) -> str:
     }
     drawing, divs = components(dict(keyed))
     kinds = list(dict.fromkeys(kind for plots in drawn for kind in plots))
-    runs = [
-        {
-            "name": panel.name,
-            "verdict": panel.verdict,
-            "mood": panel.mood,
-            "notices": panel.notices,
-            "origin": panel.origin,
-            "scenario": panel.scenario.to_toml(),
-            "plots": {kind: Markup(divs[f"{i} {kind}"]) for kind in drawn[i]},
-        }
-        for i, panel in enumerate(panels)
-    ]
+    own = text_of(HERE, "robot.js"), *page.scripts
     return template(HERE, "page.html").render(
         title=page.title,
         live=page.live,
@@ -101,20 +90,27 @@ def html(page: Page, panels: Sequence[Panel]) -> str:
         rows=page.rows,
         policy=policy_of(page.policy),
         style=Markup(text_of(HERE, "page.css")),
-        runs=runs,
+        runs=[_run(panel, i, divs, drawn[i]) for i, panel in enumerate(panels)],
         kinds=kinds,
         made_by=made_by(),
         settings=_settings(panels),
-        scripts=Markup(
-            "\n".join(
-                [
-                    *bokeh_scripts(),
-                    drawing,
-                    *map(tagged, (text_of(HERE, "robot.js"), *page.scripts)),
-                ]
-            )
-        ),
+        scripts=Markup("\n".join([*bokeh_scripts(), drawing, *map(tagged, own)])),
     )
+
+
+def _run(
+    panel: Panel, number: int, divs: Mapping[str, str], kinds: Iterable[str]
+) -> dict[str, object]:
+    """What the template is told of a run."""
+    return {
+        "name": panel.name,
+        "verdict": panel.verdict,
+        "mood": panel.mood,
+        "notices": panel.notices,
+        "origin": panel.origin,
+        "scenario": panel.scenario.to_toml(),
+        "plots": {kind: Markup(divs[f"{number} {kind}"]) for kind in kinds},
+    }
 
 
 def _plots(panel: Panel, number: int, axes: Axes, plane: Plane, high: int) -> Plots:

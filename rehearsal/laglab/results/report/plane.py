@@ -33,6 +33,14 @@ def path_plot(
         min_border_right=8,
     )
     dressed(plot)
+    _paths(plot, sources, measured)
+    _mark_target(plot, scenario.target)
+    _robot(plot, sources)
+    legend_above(plot)
+    return plot
+
+
+def _paths(plot: figure, sources: Sources, measured: bool) -> None:
     ticks = sources.ticks
     plot.scatter(
         "x_meas", "y_meas", source=ticks, size=2, color=GREY, alpha=0.35, legend_label="measured"
@@ -50,7 +58,10 @@ def path_plot(
     )
     tips = [("t", "@time{0.00} s"), ("x̂", "@x_est{0.000} m"), ("ŷ", "@y_est{0.000} m")]
     plot.add_tools(HoverTool(renderers=[path], tooltips=tips, visible=False))
-    _mark_target(plot, scenario.target)
+
+
+def _robot(plot: figure, sources: Sources) -> None:
+    """At the time that the page looks at."""
     plot.patch("x", "y", source=sources.robot, color=BLACK, fill_alpha=0.15, line_width=2)
     plot.patch(
         "x",
@@ -61,17 +72,9 @@ def path_plot(
         line_width=1.2,
         legend_label="2σ claimed",
     )
-    plot.line(
-        "x",
-        "y",
-        source=sources.flight,
-        color=RED,
-        line_width=2.5,
-        legend_label="commands in flight",
-    )
-    plot.scatter("x", "y", source=sources.flight, color=RED, size=3.5)
-    legend_above(plot)
-    return plot
+    flight = sources.flight
+    plot.line("x", "y", source=flight, color=RED, line_width=2.5, legend_label="commands in flight")
+    plot.scatter("x", "y", source=flight, color=RED, size=3.5)
 
 
 def _mark_target(plot: figure, of: Target) -> None:
