@@ -35,6 +35,7 @@ def build_fmus(directory: Path, platforms: Sequence[Platform] = ()) -> list[Path
     Raises:
         CompilerNotFoundError: there is none; says what to install.
         BuildError: the compiler failed, a source is missing, or no binary is known for here.
+        OSError: a file cannot be written; it names it.
     """
     if platforms:
         compilers = {platform: zig_compiler(platform) for platform in platforms}
@@ -88,5 +89,7 @@ def _write_zip(path: Path, files: Mapping[str, bytes]) -> Path:
                 entry.external_attr = 0o644 << 16
                 archive.writestr(entry, files[name])
         return new.replace(path)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(path)) from error  # a full disk names none
     finally:
         new.unlink(missing_ok=True)

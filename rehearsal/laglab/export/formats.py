@@ -4,6 +4,7 @@ What writes a format is loaded when it is asked for: each has libraries of its o
 """
 
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Literal, NamedTuple
 
@@ -45,7 +46,13 @@ def export(run: Run, name: FormatName, out: Path | None = None, force: bool = Fa
     if chosen.need:
         require(chosen.need)
     place = _place(chosen, out or Path(_named(run) + chosen.ending), force)
-    chosen.write(run, place)
+    try:
+        chosen.write(run, place)
+    except BaseException:
+        if chosen.files:
+            with suppress(OSError):
+                place.rmdir()  # nothing was written, if that can be
+        raise
     return place
 
 
