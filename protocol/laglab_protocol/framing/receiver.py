@@ -86,7 +86,9 @@ class Receiver:
         found. Otherwise at most one unfinished frame is kept: under 300 bytes.
         """
         buffer = self._rest + data if self._rest else data
-        boundary, within = (0, 0) if self._aligned else (-1, self._within)
+        aligned = self._aligned
+        within = 0 if aligned else self._within
+        astray = not aligned
         self._rest = b""
         verifier, expected = self._verifier, self._expected
         signed_too = verifier is not None
@@ -104,16 +106,17 @@ class Receiver:
                 else:
                     self._out_of_sequence(peer, sequence)
                 frames.append(found)
-                position = boundary = position + len(found.raw)
-                if within:
+                position += len(found.raw)
+                if astray:
                     self._nested += position <= within
+                    aligned, astray = True, within > 0
             elif found is Refusal.INCOMPLETE:
                 self._rest = buffer[position:]
                 break
             else:
-                position, end = self._refuse(found, buffer, position, position == boundary)
-                boundary, within = (position if position == end else boundary), max(within, end)
-        self._aligned = position == boundary
+                position, end = self._refuse(found, buffer, position, aligned)
+                aligned, within, astray = position == end, max(within, end), True
+        self._aligned = aligned
         self._frames += len(frames)
         if whole:
             if self._rest:
