@@ -75,7 +75,7 @@ def complete(
     compared = {
         name: _shadowed(scenario, name, directory, failed) for name in scenario.estimator.compare
     }
-    ending = replace(ending, warnings=(*ending.warnings, *failed))
+    ending = ending.warned(failed)
     following = followed(trace_pieces(directory / TRACE_FILE), scenario.target, numbers.rows)
     summary = summarise(scenario, way, ending, numbers, compared, following)
     write_summary(summary, directory)
@@ -110,7 +110,7 @@ def keep(scenario: Scenario, way: Way, ending: Ending, recorder: MemoryRecorder)
         compared[name] = shadow_error(rows, [trace], scenario.link.m)
     numbers = digest([trace], scenario.link.m)
     following = followed([trace], scenario.target, numbers.rows)
-    ending = replace(ending, warnings=(*ending.warnings, *failed))
+    ending = ending.warned(failed)
     summary = summarise(scenario, way, ending, numbers, compared, following)
     return Run(scenario, summary, None, Kept(trace, _tables(recorder), shadows))
 
