@@ -45,7 +45,7 @@ from laglab_gateway.record.files import (
 from laglab_gateway.record.lateness import TimingReport
 from laglab_gateway.record.recorder import MemoryRecorder, Recorder, Tapped
 from laglab_gateway.record.rows import FOLLOWED, ArrivalRow, ClaimRow, TimingRow, claimed
-from laglab_gateway.record.text import csv_header, csv_lines, whole_lines
+from laglab_gateway.record.text import csv_header, csv_lines, in_pieces, whole_lines
 from laglab_gateway.record.trace import (
     Trace,
     TraceRow,
@@ -132,6 +132,7 @@ __all__ = [
     "csv_header",
     "csv_lines",
     "first_tick",
+    "in_pieces",
     "read_link_log",
     "read_trace",
     "recorded_ticks",

@@ -44,8 +44,8 @@ def test_only_the_last_row_may_be_cut_short(tmp_path: Path) -> None:
     """Wherever the pieces end in which it is read."""
     path, width = tmp_path / "trace.csv", len(TraceRow._fields)
     lines = [",".join([str(tick)] * width) for tick in range(20)]
-    for cut, whole in ((9, False), (19, True)):
-        told = [line if tick != cut else line[:-9] for tick, line in enumerate(lines)]
+    for cut, by, whole in ((9, 9, False), (19, 9, True), (19, 1, True)):
+        told = [line if tick != cut else line[:-by] for tick, line in enumerate(lines)]
         path.write_text("\n".join([",".join(TraceRow._fields), *told]))
         for rows in (7, 10, 19, 20):
             if whole:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from laglab_gateway import Safety, Services, Watch, Watcher, standard_parameters
-from laglab_gateway.loops.datagrams import LARGEST_DATAGRAM
+from laglab_gateway.loops.datagrams import LARGEST_SENT
 from laglab_gateway.services import Askers, RobotState
 from laglab_protocol import (
     EVERY_MESSAGE,
@@ -126,7 +126,7 @@ def test_a_datagram_of_148_requests_gets_a_few_short_answers(
         watched.for_a_while(0.02)
     answers = datagrams(stranger)
     values = [each for data in answers for each in frames_in(data)]
-    assert max(map(len, answers)) <= LARGEST_DATAGRAM
+    assert max(map(len, answers)) <= LARGEST_SENT
     assert 5 <= sum(isinstance(each.message, ParamValue) for each in values) <= 100
 
     friend = station()

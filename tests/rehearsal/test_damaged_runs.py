@@ -34,6 +34,7 @@ GOOD_AS_FAR_AS_IT_GOES = {
     ("scenario.toml", "empty"),
     ("trace.csv", "half"),
     ("arrivals.csv", "half"),
+    ("link.csv", "half"),
     ("claims.csv", "half"),
     ("shadow-ekf.csv", "half"),
     ("robot.tlog", "half"),

@@ -73,7 +73,7 @@ def test_results_never_hold_the_whole_trace(
 def small_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
     """So that a run of a few of them is long already."""
     monkeypatch.setattr(columns, "AT_A_TIME", AT_A_TIME)
-    monkeypatch.setattr(results, "trace_pieces", partial(results.trace_pieces, rows=AT_A_TIME))
+    monkeypatch.setattr(results, "trace_pieces", partial(results.trace_pieces, most=AT_A_TIME))
 
 
 def ticks(run: Run) -> Iterable[object]:

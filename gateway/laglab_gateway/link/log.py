@@ -8,6 +8,7 @@ from typing import NamedTuple
 from laglab_gateway.errors import TimelineError
 from laglab_gateway.link.fates import LONGEST_EXTRA, Fate, FateKind
 from laglab_gateway.link.timeline import DIRECTIONS, Direction
+from laglab_gateway.record.text import whole_lines
 
 
 class LinkRow(NamedTuple):
@@ -82,7 +83,7 @@ def read_link_log(path: Path) -> dict[Direction, list[LinkRow]]:
     no run does."""
     try:
         with path.open(newline="") as file:
-            lines = csv.reader(file)
+            lines = csv.reader(whole_lines(file))
             header = next(lines, [])
             if header != list(LinkRow._fields):
                 columns = LINK_HEADER.strip()

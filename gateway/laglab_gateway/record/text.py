@@ -31,20 +31,19 @@ def csv_lines(rows: Sequence[tuple[Cell, ...]]) -> bytes:
     return _SMALL.sub(_small, _EXPONENT.sub(_exponent, text)) + b"\n"
 
 
-def whole_lines(lines: Iterator[list[str]], cells: int, most: int) -> Iterator[list[list[str]]]:
-    """A table's lines of so many cells, at `most` at a time; the last, if cut short, is left out.
+def whole_lines(file: Iterable[str]) -> Iterator[str]:
+    """Without a last one that does not end: of a process that is killed while it writes, the system
+    may write a part."""
+    return (line for line in file if line.endswith("\n"))
 
-    Raises ValueError: another line has another number of cells.
-    """
-    piece = list(islice(lines, most))
-    while piece:
-        following = list(islice(lines, most))
-        if not following and len(piece[-1]) < cells:
-            del piece[-1]
-        if any(len(line) != cells for line in piece):
+
+def in_pieces(rows: Iterator[list[str]], cells: int, most: int) -> Iterator[list[list[str]]]:
+    """A table's rows of so many cells, at `most` at a time. Raises ValueError: a row has another
+    number of cells."""
+    while piece := list(islice(rows, most)):
+        if any(len(row) != cells for row in piece):
             raise ValueError("a row has another number of columns")
         yield piece
-        piece = following
 
 
 def _exponent(found: re.Match[bytes]) -> bytes:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab_gateway.errors import TraceError
-from laglab_gateway.record.text import whole_lines
+from laglab_gateway.record.text import in_pieces, whole_lines
 
 
 class TraceRow(NamedTuple):
@@ -53,18 +53,18 @@ def read_trace(path: Path) -> Trace:
     return {name: np.concatenate([piece[name] for piece in pieces]) for name in TraceRow._fields}
 
 
-def trace_pieces(path: Path, rows: int = 5_000) -> Iterator[Trace]:
-    """A trace of any length, `rows` at a time; a last row that was cut short is left out.
+def trace_pieces(path: Path, most: int = 5_000) -> Iterator[Trace]:
+    """A trace of any length, at `most` rows at a time; a last row that was cut short is left out.
 
     Raises: TraceError, as `read_trace`.
     """
     try:
         with path.open(newline="") as file:
-            lines = csv.reader(file)
-            if next(lines, None) != list(TraceRow._fields):
+            rows = csv.reader(whole_lines(file))
+            if next(rows, None) != list(TraceRow._fields):
                 raise TraceError(f"{path} is not a trace: expected the columns {HEADER.strip()}")
             empty = True
-            for piece in whole_lines(lines, len(TraceRow._fields), rows):
+            for piece in in_pieces(rows, len(TraceRow._fields), most):
                 if columns := _columns(piece):
                     empty = False
                     yield columns

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab.errors import NoRunError
-from laglab_gateway import Row, whole_lines
+from laglab_gateway import Row, in_pieces, whole_lines
 
 Array = NDArray[np.float64]
 Columns = Mapping[str, NDArray[np.generic]]
@@ -52,10 +52,10 @@ def csv_pieces(path: Path, names: Sequence[str], parsed: Callable[[Lines], T]) -
     short is left out. Raises NoRunError."""
     try:
         with path.open(newline="", encoding="utf-8") as file:
-            lines = csv.reader(file)
-            if next(lines, None) != list(names):
+            rows = csv.reader(whole_lines(file))
+            if next(rows, None) != list(names):
                 raise NoRunError(f"{path}: expected the columns {','.join(names)}")
-            for piece in whole_lines(lines, len(names), AT_A_TIME):
+            for piece in in_pieces(rows, len(names), AT_A_TIME):
                 yield parsed(piece)
     except (OSError, ValueError, OverflowError, csv.Error) as error:
         raise NoRunError(f"{path} cannot be read: {error}") from error

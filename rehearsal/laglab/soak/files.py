@@ -11,29 +11,34 @@ from laglab_control import ESTIMATORS
 from laglab_gateway import ROWS, TLOG_FILE, TRACE_FILE, GatewayError
 from laglab_protocol import TlogError, read_tlog
 
+PAGE = 4096
+"""[bytes] Where the system leaves off the write of a process that is killed meanwhile: who reads
+such a file leaves the part out."""
 TLOG_STAMP = 8
 """[bytes] Before each frame of a telemetry log."""
 
 
 def faults_of(folder: Path, killed: bool) -> Iterator[str]:
     """What is not as it should be. Who was killed may have no results, but no torn files."""
-    yield from _torn(folder)
+    cut = {path.name for path in folder.glob("*") if killed and path.stat().st_size % PAGE == 0}
+    yield from (fault for name, fault in _torn(folder) if name not in cut)
     if not killed:
         yield from _unreadable(folder)
 
 
-def _torn(folder: Path) -> Iterator[str]:
+def _torn(folder: Path) -> Iterator[tuple[str, str]]:
+    """Name and fault of each file that does not end where it should."""
     for name in (TRACE_FILE, *ROWS):
         path = folder / name
         if path.exists() and (fault := _torn_table(path)):
-            yield f"{name}: {fault}"
+            yield name, f"{name}: {fault}"
     log = folder / TLOG_FILE
     try:
         told = sum(TLOG_STAMP + len(frame.raw) for _, frame in read_tlog(log))
         if told != log.stat().st_size:
-            yield f"{TLOG_FILE}: {log.stat().st_size - told} bytes are no record"
+            yield TLOG_FILE, f"{TLOG_FILE}: {log.stat().st_size - told} bytes are no record"
     except (TlogError, OSError) as error:
-        yield f"{TLOG_FILE}: {error}"
+        yield TLOG_FILE, f"{TLOG_FILE}: {error}"
 
 
 def _torn_table(path: Path) -> str:

@@ -141,7 +141,7 @@ BAD_TIMELINES = {
     ),
     "nothing.csv": (None, "nothing.csv"),
     "other.csv": ("a,b\n1,2\n", "not a link log: expected the columns"),
-    "long.csv": ('"' + "x" * 200_000, "not a readable link log"),
+    "long.csv": ('"' + "x" * 200_000 + "\n", "not a readable link log"),
 }
 
 
