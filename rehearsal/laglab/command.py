@@ -111,7 +111,7 @@ def _exit_code(arguments: list[str] | None) -> int:
         on_interrupt(signal.default_int_handler)
         code = int(app(asked, prog_name="laglab", standalone_mode=False) or 0)
     except typer.TyperException as error:
-        return _say(error.format_message(), error.exit_code)
+        return _say(error.format_message().replace("Value error, ", ""), error.exit_code)
     except LaglabError as error:
         return _say(str(error), error.exit_code)
     except CUT_SHORT as error:

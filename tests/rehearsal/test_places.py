@@ -168,6 +168,15 @@ def test_an_unset_variable_names_no_place(in_vain: Refused) -> None:
     assert "--out" in in_vain("run", "fig6", "--out", "")
 
 
+def test_a_run_that_could_not_begin_blocks_no_place(ended: Callable[..., Any]) -> None:
+    port = "serial:///dev/none:115200"
+    for _ in range(2):
+        code, _, errors = ended("run", "lab", "--plant", port, "--out", "unbegun")
+        assert code == 2
+        assert "no such port /dev/none" in errors
+    assert not Path("unbegun").exists()
+
+
 def test_what_had_no_room_blocks_no_place(monkeypatch: pytest.MonkeyPatch) -> None:
     def full(path: Path, *_: object, **__: object) -> None:
         path.touch()

@@ -1,15 +1,20 @@
 """Plans: while nothing newer comes the robot goes on by what was planned for that time."""
 
+import io
+import re
 import subprocess
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 import laglab
 from laglab.errors import ScenarioError
+from laglab.results.link_view import link_view
 from laglab.results.run import Run
+from laglab.results.table import results_table
 
 Laglab = Callable[..., subprocess.CompletedProcess[str]]
 Keys = Mapping[str, object]
@@ -144,6 +149,17 @@ def test_a_shadow_believes_what_the_station_believed() -> None:
     compared = {"estimator.compare": ["delayed-ekf"], "link.plan": 20}
     done = run("fig6", shadowed, compared, late, LOSING)
     assert done.summary.compare["delayed-ekf"] == done.summary.rms_error
+
+
+def test_a_command_whose_plan_never_came_whole_has_no_delay() -> None:
+    """It is given up long after."""
+    done = run("fig6", {"link.plan": 60, "duration": 5.0}, LOSING)
+    late = done.arrivals["refused"] == "incomplete"
+    assert late.sum() > 50
+    assert link_view(done).directions["command"].delay.max() == done.scenario.link.n
+    told = io.StringIO()
+    Console(file=told, width=120).print(results_table(done.summary))
+    assert re.search(r"arrived, 10.0 ticks late \(10 to 10\); \d+ frames lost *\n", told.getvalue())
 
 
 @pytest.mark.parametrize("length", [-1, 241])

@@ -2,6 +2,7 @@
 
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -96,7 +97,12 @@ def test_what_was_done_is_kept_and_the_rest_is_done_later(
     sweep.send_signal(number)
     _, errors = sweep.communicate(timeout=20)
     assert sweep.returncode == code
-    assert errors == ("laglab: interrupted\n" if code == 130 else "")
+    if code == 130:
+        kept, ended = errors.splitlines()
+        assert re.fullmatch(r"laglab: \d+ of \d+ runs are kept: .*goes on from there", kept)
+        assert ended == "laglab: interrupted"
+    else:
+        assert not errors
     assert len(workers) == 2
     assert all(map(gone, workers))
     for half in (out / "cells").glob(".*.new"):  # killed while it was being written

@@ -9,6 +9,11 @@ import pytest
 Refused = Callable[..., str]
 WRONG = [
     (["run", "fig9"], "fig9: no such scenario"),
+    (["report", "gone"], "gone is not there: name the folder of a run"),
+    (["plant", "check", "boat:Boat"], "`laglab check boat:Boat` looks at it"),
+    (["rivals", "--estimator", "popf"], "No such option: --estimator"),
+    (["errata", "--estimator", "popf"], "No such option: --estimator"),
+    (["run", "fig6", "--transport", "tcp"], "Invalid value for '--transport': 'tcp' is not one of"),
     (["run", "x" * 300], "File name too long"),
     (["run", "x\0y"], "embedded null byte"),
     (["run", "fig6", "-n", "-1"], "command_delay"),

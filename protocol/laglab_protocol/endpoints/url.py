@@ -55,7 +55,7 @@ def _host_and_port(url: str, rest: str) -> tuple[str, int]:
 def _device_and_baud(url: str, rest: str, separator: str) -> tuple[str, int]:
     device, found, baud = rest.rpartition(separator)
     if not found:
-        raise BadUrlError(f"{url!r}: no baud: write it after the device, {rest}{separator}57600")
+        raise BadUrlError(f"{url!r}: no baud: write it after the device, {rest}{separator}115200")
     if not device:
         raise BadUrlError(f"{url!r}: no device: write /dev/… before the baud")
     return device, _number(url, "baud", baud, 4_000_000, least=1)

@@ -257,7 +257,7 @@ def fit(
     law = station_config(on).law
     margin = delay_margin(law, interval) if isinstance(law, PolarLaw) else None
     console.print(choices_table(found, margin))
-    for line in suggestions(found):
+    for line in suggestions(found, out, file, scenario):
         console.print(line, highlight=False)
     print(out)
     if figure is not None:

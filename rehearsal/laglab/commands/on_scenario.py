@@ -90,7 +90,7 @@ def _overrides(options: dict[str, Any]) -> dict[str, object]:
     """What beats the file; takes the options that say so out of `options`."""
     own = {key: options.pop(_parameter(key)) for key in OWN}
     own = {key: value for key, value in own.items() if value is not None}
-    if names := options.pop("estimator"):
+    if names := options.pop("estimator", None):
         own |= {"estimator.kind": names[0]}
         own |= {"estimator.compare": names[1:]} if names[1:] else {}
     if timeline := options.pop("timeline"):
@@ -103,11 +103,13 @@ def _parameter(key: str) -> str:
     return key.replace(".", "_")
 
 
-def _parameters(by_default: object) -> Iterator[inspect.Parameter]:
+def _parameters(by_default: object, estimators: bool) -> Iterator[inspect.Parameter]:
     """SCENARIO, and the options that override it."""
     keyword = inspect.Parameter.KEYWORD_ONLY
     yield inspect.Parameter("scenario", keyword, default=by_default, annotation=ScenarioArgument)
     for name, hint in OF_SEVERAL_KEYS.items():
+        if name == "estimator" and not estimators:
+            continue
         yield inspect.Parameter(name, keyword, default=None, annotation=hint)
     said = {row.place: row.key for row in rows()}
     for key, own in OWN.items():
@@ -118,11 +120,14 @@ def _parameters(by_default: object) -> Iterator[inspect.Parameter]:
 
 
 def on_scenario(
-    command: Callable[..., None], by_default: object = inspect.Parameter.empty
+    command: Callable[..., None],
+    by_default: object = inspect.Parameter.empty,
+    estimators: bool = True,
 ) -> Callable[..., None]:
     """Give ``command(scenario, …)`` the SCENARIO argument and the options that override it.
 
-    `by_default` is the SCENARIO where none is named, if that is allowed.
+    `by_default` is the SCENARIO where none is named, if that is allowed; without `estimators` the
+    command has its own.
     """
     own = list(inspect.signature(command).parameters.values())[1:]
 
@@ -135,7 +140,10 @@ def on_scenario(
         command(loaded, **options)
 
     keyword = inspect.Parameter.KEYWORD_ONLY
-    parameters = [*_parameters(by_default), *(each.replace(kind=keyword) for each in own)]
+    parameters = [
+        *_parameters(by_default, estimators),
+        *(each.replace(kind=keyword) for each in own),
+    ]
     wrapper.__name__ = command.__name__
     wrapper.__doc__ = command.__doc__
     wrapper.__annotations__ = {item.name: item.annotation for item in parameters}

@@ -1,6 +1,7 @@
 """What to take from a fit, in sentences."""
 
 from collections.abc import Iterator
+from pathlib import Path
 
 from laglab.link.fitting import Fit
 
@@ -8,8 +9,9 @@ FAR = 0.1
 """The Kolmogorov-Smirnov distance beyond which a fit is a poor one."""
 
 
-def suggestions(fit: Fit) -> Iterator[str]:
-    """n and m without play-out, bounds with it, and how to rehearse on what was measured."""
+def suggestions(fit: Fit, link: Path, frames: Path, scenario: str) -> Iterator[str]:
+    """n and m without play-out, bounds with it, and how to rehearse the `scenario` on what was
+    measured: fitted in the file `link`, and frame by frame."""
     yield (
         "* suggested; to the margin: ticks left of the delay margins, on the way to the goal and "
         "at it, that the law has where the station does not predict."
@@ -28,6 +30,6 @@ def suggestions(fit: Fit) -> Iterator[str]:
             "which come in an order that no such link has: rather replay them."
         )
     yield (
-        "Rehearse on the fitted link: laglab run FILE.toml; on the very frames: "
-        "laglab run SCENARIO -n 0 -m 0 --timeline FILE.csv."
+        f"Rehearse on the fitted link: laglab run {link}; on the very frames: "
+        f"laglab run {scenario} -n 0 -m 0 --timeline {frames}."
     )

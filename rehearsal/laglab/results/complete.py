@@ -14,6 +14,7 @@ from laglab.results.columns import Columns, columns_of
 from laglab.results.digest import Digest, digest, followed
 from laglab.results.figures import save_figure
 from laglab.results.numbers import goal_errors, has_converged, robot_pose
+from laglab.results.place import withdraw
 from laglab.results.run import Kept, Run
 from laglab.results.shadows import (
     Shadow,
@@ -70,7 +71,10 @@ def complete(
     try:
         numbers = digest(trace_pieces(directory / TRACE_FILE), scenario.link.m)
     except TraceError as error:
-        raise nothing_recorded(ending, str(error)) from None
+        why = nothing_recorded(ending, str(error))
+        if isinstance(why, RefusedError):
+            withdraw(directory)
+        raise why from None
     failed: list[str] = []
     compared = {
         name: _shadowed(scenario, name, directory, failed) for name in scenario.estimator.compare

@@ -12,12 +12,15 @@ from numpy.typing import NDArray
 
 from laglab.results.columns import Columns
 from laglab_gateway import ARRIVALS_FILE, DIRECTIONS, FOLLOWED, LINK_FILE, Direction, FateKind
+from laglab_gateway.drive import Rejection
 
 if TYPE_CHECKING:
     from laglab.results.run import Run
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+INCOMPLETE = Rejection.INCOMPLETE.value
+"""Of such a command it is not known when it would have come."""
 SILENT = 20
 """[ticks] When nothing gets through for so long it is an outage, whatever the record calls it."""
 
@@ -101,7 +104,7 @@ class _Arrivals:
 
     def add(self, piece: Columns) -> None:
         for name, kept in self._came.items():
-            rows = piece["direction"] == name
+            rows = (piece["direction"] == name) & (piece["refused"] != INCOMPLETE)
             time, came, stamp = (
                 piece[column][rows].astype(float) for column in ("time", "arrived", "tick")
             )

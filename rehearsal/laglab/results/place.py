@@ -8,12 +8,10 @@ from laglab.errors import PlaceError
 from laglab.files import folder_place
 from laglab.results.figures import FIGURE_FILE
 from laglab.results.run import SCENARIO_FILE
-from laglab.results.summary import SUMMARY_FILE
+from laglab.results.summary import STUDY_FILE, SUMMARY_FILE
 from laglab.scenario import Scenario
 from laglab_gateway import ROWS, TLOG_FILE, TRACE_FILE
 
-STUDY_FILE = "study.toml"
-"""Of a study's folder."""
 REPORT_FILE = "report.html"
 OURS = (SCENARIO_FILE, SUMMARY_FILE, TRACE_FILE, TLOG_FILE, *ROWS, FIGURE_FILE, REPORT_FILE)
 
@@ -46,6 +44,14 @@ def place(scenario: Scenario, out: Path | None, force: bool = False, suffix: str
             (directory / SCENARIO_FILE).unlink(missing_ok=True)
         raise PlaceError(f"cannot write into {directory}: {error.strerror}") from error
     return directory
+
+
+def withdraw(directory: Path) -> None:
+    """There are no results after all: the next run may go there."""
+    with suppress(OSError):
+        for name in OURS:
+            (directory / name).unlink(missing_ok=True)
+        directory.rmdir()  # if nothing of somebody else's is there
 
 
 def _fresh(parent: Path, name: str) -> Path:

@@ -12,6 +12,8 @@ from laglab_gateway import TLOG_FILE, LinkReport, TimingReport
 from laglab_station import StationReport
 
 SUMMARY_FILE = "summary.json"
+STUDY_FILE = "study.toml"
+"""What a study's folder has instead."""
 SCHEMA_VERSION = 4
 
 Side = Literal["both", "robot", "station"]
@@ -108,10 +110,18 @@ def read_summary(directory: Path) -> Summary:
                 f"{directory} has no {SUMMARY_FILE}: that run was killed, or is not over; its log "
                 f"can be replayed: laglab replay {log}"
             ) from error
-        raise NoRunError(f"{path} cannot be read: {error.strerror}") from error
+        raise NoRunError(_why_not(directory, error)) from error
     except (msgspec.DecodeError, RecursionError) as error:
         raise NoRunError(f"{path} is not a run's summary: {error}") from error
     raise NoRunError(f"{path} has schema version {version}, this laglab reads {SCHEMA_VERSION}")
+
+
+def _why_not(directory: Path, error: OSError) -> str:
+    if not directory.exists():
+        return f"{directory} is not there: name the folder of a run"
+    if (directory / STUDY_FILE).exists():
+        return f"{directory} is a study's: `laglab map` and `laglab sweep --report` show it"
+    return f"{directory / SUMMARY_FILE} cannot be read: {error.strerror}"
 
 
 class _Versioned(Struct):

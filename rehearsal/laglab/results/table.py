@@ -1,10 +1,12 @@
 """A run's numbers, for reading."""
 
+from collections.abc import Mapping
+
 from rich.table import Table
 
 from laglab.results.summary import Errors, Following, Summary
 from laglab.tables import plain_table
-from laglab_gateway import DirectionReport, LinkReport, TimingReport
+from laglab_gateway import DirectionReport, FateKind, LinkReport, TimingReport
 from laglab_station import StationReport
 
 SHOWN = 5
@@ -78,16 +80,24 @@ def _link_rows(link: LinkReport) -> dict[str, str]:
 
 
 def _direction(audit: DirectionReport) -> str:
-    measured, lost = audit.measured, sum(audit.lost.values())
+    measured = audit.measured
     if measured is None:
         return "none arrived"
     delay = f"{measured.mean:.1f} ticks late ({measured.min} to {measured.max})"
-    causes = ", ".join(f"{count} {cause}" for cause, count in audit.lost.items())
     return (
         f"{audit.arrived} arrived, {delay}"
-        + (f"; lost {lost}: {causes}" if lost else "")
+        + (f"; {_lost(audit.lost)}" if audit.lost else "")
         + (f"; {audit.reordered} out of order" if audit.reordered else "")
     )
+
+
+def _lost(by_cause: Mapping[str, int]) -> str:
+    """Of frames: a command may have several."""
+    causes = ", ".join(f"{count} {cause}" for cause, count in by_cause.items())
+    if len(by_cause) == 1:
+        (causes,) = by_cause
+    told = "" if causes == FateKind.LOST else f": {causes}"
+    return f"{sum(by_cause.values())} frames lost{told}"
 
 
 def _timing_row(timing: TimingReport) -> dict[str, str]:

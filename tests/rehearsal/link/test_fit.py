@@ -144,12 +144,15 @@ def test_the_fitted_link_does_what_was_measured() -> None:
             assert at[1] == pytest.approx(at[0], rel=0.05)
 
 
+FILES = Path("link.toml"), Path("link.csv")
+
+
 def test_a_poor_fit_is_told() -> None:
     drift = 0.02 + 0.02 * np.arange(900.0) / 900  # one slow rise: no stationary link does that
     found = fit(MeasuredLink(Flow(TS * np.arange(900.0), drift, 9), NONE, TS), 0.01)
     assert max(found.distances) > 0.15
-    assert "a poor one" in " ".join(suggestions(found))
-    assert "a poor one" not in " ".join(suggestions(fit(MEASURED, 0.01)))
+    assert "a poor one" in " ".join(suggestions(found, *FILES, "lab"))
+    assert "a poor one" not in " ".join(suggestions(fit(MEASURED, 0.01), *FILES, "lab"))
 
 
 def test_bounds_are_the_least_that_keep_their_word() -> None:

@@ -12,6 +12,7 @@ from laglab.progress import status
 from laglab.runs.plant import check_plant
 from laglab.scenario import Overrides, Scenario, assignment, changed, load
 from laglab.tables import terminal
+from laglab_control import is_module_class
 
 app = group("A robot of your own.")
 
@@ -36,6 +37,8 @@ def check(
     The exit code is 1 when something is not as it must be, 2 when it cannot be used at all.
     """
     require(STEPPING)
+    if is_module_class(file) and not Path(file).exists():
+        raise typer.BadParameter(f"{file} is a class: `laglab check {file}` looks at it")
     from laglab.plants import Proposal, proposed, tried
     from laglab.plants.report import headed, offered, shown, told_in_toml
     from laglab_fmu.foreign import FmuFile

@@ -13,7 +13,7 @@ from laglab.studies.errata import VARIANTS, costs, costs_table
 from laglab.tables import terminal
 
 
-@partial(on_scenario, by_default="fig8")
+@partial(on_scenario, by_default="fig8", estimators=False)
 def errata(
     scenario: Scenario,
     seeds: Annotated[int, typer.Option(min=1, help="Runs with noise, for each version.")] = 5,

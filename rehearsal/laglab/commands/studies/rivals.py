@@ -34,7 +34,7 @@ from laglab.studies.rivals import (
 from laglab.tables import terminal
 
 
-@partial(on_scenario, by_default="lab")
+@partial(on_scenario, by_default="lab", estimators=False)
 def rivals(
     scenario: Scenario,
     seeds: SeedsOption = 20,

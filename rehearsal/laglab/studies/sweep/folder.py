@@ -17,8 +17,7 @@ import pyarrow.parquet as pq
 
 from laglab.errors import NoRunError, PlaceError
 from laglab.files import BESIDE, folder_place, write_whole
-from laglab.results.place import STUDY_FILE
-from laglab.results.summary import SUMMARY_FILE
+from laglab.results.summary import STUDY_FILE, SUMMARY_FILE
 from laglab.studies.sweep.cells.cell import Cell
 from laglab.studies.sweep.cells.compute import DESCRIPTION
 from laglab.studies.sweep.loading import study_of, to_toml
