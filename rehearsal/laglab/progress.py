@@ -6,6 +6,7 @@ any moment, and may hold a lock when Ctrl-C comes.
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from math import inf
 from typing import TypeVar
 
 from rich.progress import (
@@ -23,7 +24,7 @@ from rich.text import Text
 
 from laglab.runs.glance import Glance, OnTick
 from laglab.scenario import Scenario
-from laglab.tables import terminal
+from laglab.tables import say, terminal
 
 T = TypeVar("T")
 PACE_WINDOW = 300.0
@@ -31,6 +32,9 @@ PACE_WINDOW = 300.0
 
 REFRESHED = 0.1
 """[s] Nothing is shown sooner after the last: to show it takes time from the work."""
+
+LOGGED = 60.0
+"""[s] Between two lines, where nothing can be shown in place."""
 
 ROOMY, NARROW = 72, 44
 """[columns] Narrower terminals are told less."""
@@ -75,7 +79,10 @@ def at_a_glance(scenario: Scenario, tick: int, glance: Glance, width: int) -> st
 def tracked(work: Iterable[T], total: int, title: str, unit: str) -> Iterator[T]:
     """The same, shown as it comes."""
     with _bar(unit) as bar:
-        yield from bar.track(work, total=total, description=title)
+        in_lines = _Lines(title, total, bar)
+        for done, each in enumerate(bar.track(work, total=total, description=title), start=1):
+            yield each
+            in_lines.told(done)
 
 
 @contextmanager
@@ -119,14 +126,31 @@ def progress_of_study(
     )
     with _shown(*columns, shown=shown, window=PACE_WINDOW) as bar:
         task = bar.add_task(name, total=cost, done=0, of=runs)
+        in_lines = _Lines(name, runs, bar, shown)
         done = 0
 
         def told(some: int, theirs: float) -> None:
             nonlocal done
             done += some
             bar.update(task, advance=theirs, done=done, refresh=True)
+            in_lines.told(done)
 
         yield told
+
+
+class _Lines:
+    """What a bar tells, for a log: a line now and then."""
+
+    def __init__(self, title: str, total: int, bar: Progress, shown: bool = True) -> None:
+        self._title, self._total = title, total
+        self._now = bar.get_time
+        self._next = self._now() + LOGGED if shown and bar.disable else inf
+
+    def told(self, done: int) -> None:
+        """So many are."""
+        if self._now() >= self._next and done < self._total:
+            self._next = self._now() + LOGGED
+            say(f"{self._title}: {done} of {self._total}")
 
 
 @contextmanager

@@ -15,7 +15,8 @@ from typing import NamedTuple
 import pytest
 
 import laglab
-from laglab.progress import at_a_glance
+from laglab import progress
+from laglab.progress import at_a_glance, progress_of_study, tracked
 from laglab.results.station import StationGlance
 from laglab.runs.glance import Glance, Glances
 from laglab.scenario import load
@@ -104,6 +105,25 @@ def test_a_pipe_gets_the_results_alone(arguments: tuple[str, ...], tmp_path: Pat
     assert "\x1b" not in ended.stdout + ended.stderr
     assert "to go" not in ended.stderr
     assert max(map(len, ended.stdout.splitlines()[:12])) <= 80
+
+
+def test_a_log_gets_a_line_now_and_then(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def work() -> None:
+        assert list(tracked("abc", 3, "letters", "letter")) == ["a", "b", "c"]
+        with progress_of_study("delays", 40, 1.0) as told:
+            for _ in range(4):
+                told(10, 0.25)
+        with progress_of_study("unshown", 40, 1.0, shown=False) as told:
+            told(10, 0.25)
+
+    work()
+    assert capsys.readouterr() == ("", "")
+    monkeypatch.setattr(progress, "LOGGED", 0.0)
+    work()
+    lines = "letters: 1 of 3", "letters: 2 of 3", *(f"delays: {n} of 40" for n in (10, 20, 30))
+    assert capsys.readouterr() == ("", "".join(f"{line}\n" for line in lines))
 
 
 def test_what_matters_least_is_left_out_first() -> None:
