@@ -16,6 +16,7 @@ from laglab_fmu.errors import (
     FmuError,
     FmuFileError,
     FmuNotBuiltError,
+    WiringError,
 )
 from laglab_fmu.parameters import INTEGRATIONS, Reading, RobotParameters
 
@@ -42,6 +43,7 @@ __all__ = [
     "Reading",
     "Robot",
     "RobotParameters",
+    "WiringError",
     "build_fmus",
     "c_compiler",
     "compile_library",

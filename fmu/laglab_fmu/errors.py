@@ -21,5 +21,10 @@ class FmuFileError(FmuError):
     """Somebody's FMU cannot be used here, or not so; names the file and what is in the way."""
 
 
+class WiringError(FmuFileError):
+    """A name in a `Wiring` is of no variable, or of one that does not do; the text begins with the
+    key in it."""
+
+
 class CallError(FmuError):
     """The FMU refused a call; carries what it logged."""

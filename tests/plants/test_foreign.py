@@ -166,9 +166,9 @@ def test_resources_that_are_missing_are_told_by_the_fmu(tmp_path: Path, library:
         (Wiring({**WHEELS, "omega_left": "drive.cmdleft"}, POSE), "did you mean drive.cmd_left"),
         (Wiring({**WHEELS, "omega_left": "posX"}, POSE), "posX of rover.fmu is no real input"),
         (Wiring(WHEELS, {**POSE, "x": "zzzzzzz"}), "its outputs: posX, posY"),
-        (Wiring(WHEELS, {**POSE, "x": "posX[1]"}), r"plant.outputs.x: .* no variable 'posX\[1\]'"),
-        (Wiring(WHEELS, POSE, {"x": "posx0"}), "plant.start.x: .*did you mean posX_0"),
-        (Wiring(WHEELS, POSE, parameters={"base": 1.0}), "plant.parameters: .* wheel.base"),
+        (Wiring(WHEELS, {**POSE, "x": "posX[1]"}), r"outputs.x: .* no variable 'posX\[1\]'"),
+        (Wiring(WHEELS, POSE, {"x": "posx0"}), "start.x: .*did you mean posX_0"),
+        (Wiring(WHEELS, POSE, parameters={"base": 1.0}), "parameters: .* wheel.base"),
     ],
 )
 def test_wrong_names_are_told_with_what_is_near(fmus: Path, wiring: Wiring, said: str) -> None:

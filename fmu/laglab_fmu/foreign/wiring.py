@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from fmpy.model_description import ModelVariable
 
-from laglab_fmu.errors import FmuFileError
+from laglab_fmu.errors import WiringError
 from laglab_fmu.foreign.file import FmuFile
 from laglab_fmu.foreign.steps import substeps
 
@@ -47,39 +47,39 @@ def size(variable: ModelVariable) -> int:
 
 
 def input_elements(file: FmuFile, names: Mapping[str, str]) -> list[Element]:
-    """What the FMU can be told while it runs. Raises FmuFileError, naming the key."""
+    """What the FMU can be told while it runs. Raises WiringError, naming the key."""
     found = [_found(file, f"inputs.{ours}", theirs) for ours, theirs in names.items()]
     for ours, element in zip(names, found, strict=True):
         variable = element.variable
         settable = variable.causality == "input" or variable.variability == "tunable"
         if not settable or variable.type not in REAL:
-            raise FmuFileError(
-                f"plant.inputs.{ours}: {element.name} of {file.path.name} is no real input, but "
+            raise WiringError(
+                f"inputs.{ours}: {element.name} of {file.path.name} is no real input, but "
                 f"{_what(variable)}; its inputs: {_listed(file, 'input')}"
             )
     return found
 
 
 def output_elements(file: FmuFile, names: Mapping[str, str]) -> list[Element]:
-    """What the FMU can be asked. Raises FmuFileError, naming the key."""
+    """What the FMU can be asked. Raises WiringError, naming the key."""
     found = [_found(file, f"outputs.{ours}", theirs) for ours, theirs in names.items()]
     for ours, element in zip(names, found, strict=True):
         kind = element.variable.type
         if kind not in NUMBERS and not kind.lstrip("U").startswith("Int"):
-            raise FmuFileError(
-                f"plant.outputs.{ours}: {element.name} of {file.path.name} is no number, but "
+            raise WiringError(
+                f"outputs.{ours}: {element.name} of {file.path.name} is no number, but "
                 f"{_what(element.variable)}; its outputs: {_listed(file, 'output')}"
             )
     return found
 
 
 def start_elements(file: FmuFile, names: Mapping[str, str]) -> list[Element]:
-    """What the FMU can be told of its start. Raises FmuFileError, naming the key."""
+    """What the FMU can be told of its start. Raises WiringError, naming the key."""
     return [_found(file, f"start.{ours}", theirs) for ours, theirs in names.items()]
 
 
 def check_parameters(file: FmuFile, values: Mapping[str, Value]) -> None:
-    """Raises FmuFileError: there is no such variable."""
+    """Raises WiringError: there is no such variable."""
     for name in values:
         _found(file, "parameters", name)
 
@@ -99,8 +99,8 @@ def _found(file: FmuFile, key: str, name: str) -> Element:
     if name in variables:
         if size(variables[name]) > 1 and key != "parameters":
             last = ",".join(str(each - 1) for each in variables[name].shape)
-            raise FmuFileError(
-                f"plant.{key}: {name} of {file.path.name} is an array: take one of {name}[0] to "
+            raise WiringError(
+                f"{key}: {name} of {file.path.name} is an array: take one of {name}[0] to "
                 f"{name}[{last}]"
             )
         return Element(name, variables[name])
@@ -110,14 +110,12 @@ def _found(file: FmuFile, key: str, name: str) -> Element:
         place = _place(indices, array.shape)
         if place is None:
             shape = " by ".join(map(str, array.shape))
-            raise FmuFileError(
-                f"plant.{key}: {name}: {split[1]} of {file.path.name} has {shape} elements, "
+            raise WiringError(
+                f"{key}: {name}: {split[1]} of {file.path.name} has {shape} elements, "
                 "counted from 0"
             )
         return Element(name, array, place)
-    raise FmuFileError(
-        f"plant.{key}: {file.path.name} has no variable {name!r}; {_near(file, name)}"
-    )
+    raise WiringError(f"{key}: {file.path.name} has no variable {name!r}; {_near(file, name)}")
 
 
 def _place(indices: Sequence[int], shape: Sequence[int]) -> int | None:

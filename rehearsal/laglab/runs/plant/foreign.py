@@ -10,7 +10,7 @@ from laglab.runs.plant.sensor import NoisySensor
 from laglab.runs.plant.shipped import wheel_speeds
 from laglab.scenario import Scenario
 from laglab.scenario.tables.plant import POSE_NAMES
-from laglab_fmu import INTEGRATIONS, fmu_path
+from laglab_fmu import INTEGRATIONS, WiringError, fmu_path
 from laglab_fmu.foreign import FmuFile, ForeignRobot, Wiring, check
 from laglab_gateway import Reading, UnplaceableError
 
@@ -109,7 +109,10 @@ def open_foreign(scenario: Scenario) -> Iterator[OpenPlant]:
     """Raises: FmuError."""
     path, told = wired(scenario)
     start = start_values(told, scenario, scenario.start)
-    with ForeignRobot(FmuFile.read(path), told, scenario.sample_time, start) as robot:
+    file = FmuFile.read(path)
+    with _naming_the_key():
+        opened = ForeignRobot(file, told, scenario.sample_time, start)
+    with opened as robot:
         plant = ForeignPlant(robot, told, scenario)
         yield OpenPlant(plant, is_placeable(told), _elsewhere(scenario, plant.read()))
 
@@ -129,4 +132,15 @@ def _elsewhere(scenario: Scenario, reading: Reading) -> tuple[str, ...]:
 def check_foreign(scenario: Scenario) -> None:
     """All that can be known to be wrong before the FMU runs. Raises: FmuError."""
     path, told = wired(scenario)
-    check(FmuFile.read(path), told, scenario.sample_time)
+    file = FmuFile.read(path)
+    with _naming_the_key():
+        check(file, told, scenario.sample_time)
+
+
+@contextmanager
+def _naming_the_key() -> Iterator[None]:
+    """As a scenario has it."""
+    try:
+        yield
+    except WiringError as error:
+        raise WiringError(f"plant.{error}") from None
