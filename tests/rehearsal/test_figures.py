@@ -12,11 +12,14 @@ from matplotlib.figure import Figure
 from matplotlib.quiver import Quiver
 
 import laglab
+from laglab.results.columns import joined
 from laglab.results.figures import INCHES, Width, draw_runs, legend, printed, sheet
 from laglab.results.figures.strip import CAUSES
 from laglab.results.link_view import link_view
+from laglab.results.run import Kept
 from laglab.scenario import load
 from laglab.scenario.differences import differing
+from laglab_gateway import ROWS
 from laglab_gateway.drive import Rejection
 from laglab_gateway.link.fates import FateKind
 
@@ -182,6 +185,33 @@ def test_an_alarm_is_marked_when_it_was_raised() -> None:
     for axes in run.figure().axes[1:]:
         marks = [each for each in axes.lines if each.get_label() == "alarm"]
         assert [each.get_xdata()[0] for each in marks] == [pytest.approx(tick * 0.01)]
+
+
+def test_an_alarm_is_named_and_none_of_the_curves() -> None:
+    figure = laglab.run("lab", {**PUSHED, "estimator.compare": ["ekf"]}).figure()
+    for name in ("error x", "shadow x"):
+        axes = panel(figure, name)
+        assert "alarm" in names(axes)
+        (alarm,) = (each for each in axes.lines if each.get_label() == "alarm")
+        assert alarm.get_marker() == "v"
+
+
+def unseen(run: laglab.Run) -> laglab.Run:
+    """As of a real robot, whose true pose nobody knows."""
+    nowhere = np.full(len(run.trace["tick"]), np.nan)
+    trace = run.trace | dict.fromkeys(("x", "y", "theta"), nowhere)
+    tables = {name: joined(run.table_pieces(name)) for name in ROWS}
+    return laglab.Run(run.scenario, run.summary, None, Kept(trace, tables, {}))
+
+
+def test_what_is_measured_is_not_called_true() -> None:
+    run = laglab.run("lab", {"duration": 1.0})
+    real = unseen(run)
+    assert panel(real.figure(), "error x").get_ylabel().startswith("x less\nmeasured")
+    figure = draw_runs([run, real])
+    assert names(panel(figure, "error")) == ["1: lab", "2: lab, less measured"]
+    assert "2: lab, measured" in names(panel(figure, "path"))
+    assert names(panel(draw_runs([run, run]), "error")) == []
 
 
 @pytest.mark.parametrize("width", WIDTHS)

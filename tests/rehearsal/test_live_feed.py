@@ -3,12 +3,15 @@
 import asyncio
 import socket
 
+import msgspec
 import pytest
 
 from laglab.live import feed
 from laglab.live.feed import Controls, Feed
-from laglab.live.messages import Given, Line, Rows, packed, unpacked
+from laglab.live.messages import Given, Line, LiveOrder, Rows, packed, unpacked
+from laglab.live.page import page_html
 from laglab.live.server import _unless_crowded
+from laglab.scenario import load
 
 
 def test_a_fast_station_s_frames_all_have_room() -> None:
@@ -63,3 +66,11 @@ def test_a_crowd_at_the_door_is_not_told_to_the_terminal(
     finally:
         loop.close()
     assert capsys.readouterr().err == ""
+
+
+def test_of_a_real_robot_the_page_knows_no_true_pose() -> None:
+    scenario = load("lab")
+    order = LiveOrder(scenario.to_toml(), "127.0.0.1", 0, "t", "s", False, False, "simulated")
+    real = msgspec.structs.replace(order, measured=True)
+    assert "estimate less robot" in page_html(scenario, order, controls=False)
+    assert "estimate less measurement" in page_html(scenario, real, controls=False)

@@ -109,6 +109,20 @@ def test_the_longest_numeric_keys_span_the_map():
     assert layout(study({**GRID, "law.h": [1.0, 2.0]})) == Layout(N, M, KIND, ("law.h",))
 
 
+def test_a_key_without_a_scale_makes_panels_before_a_longer_one():
+    grid = {KIND: ["raw", "popf"], "law.h": [1.0, 2.0, 3.0], N: [0, 1, 2], M: [0, 1, 2]}
+    assert layout(study(grid), x="law.h", y=N) == Layout("law.h", N, KIND, (M,))
+
+
+def test_titles_of_panels_are_no_wider_than_these():
+    grid = {N: [0, 1], "law.h": [1.0, 2.0], "link.measurement.extra_delay.mean": [0.01, 0.02]}
+    figure = draw_study(study(grid), ["converged"], x=N, y="law.h")
+    figure.draw_without_rendering()
+    first, second = (axes.title.get_window_extent() for axes in figure.axes[:2])
+    assert "\n" in figure.axes[0].get_title()
+    assert not first.overlaps(second)
+
+
 def test_what_is_taken_together_is_in_the_title():
     figure = draw_study(study({**GRID, "law.h": [1.0, 2.0]}), ["converged"], x=N, y=M)
     assert "together" in figure.get_suptitle()
@@ -159,8 +173,9 @@ def test_the_command_draws_what_the_ending_says(folder, tmp_path, name, magic):
 def test_one_key_makes_lines_with_their_intervals():
     figure = draw_study(study({N: [0, 10, 20], KIND: ["raw", "popf"]}), ["converged", "settled_s"])
     shares, _ = figure.axes
+    (legend,) = figure.legends
     assert len(shares.containers) == 2
-    assert "raw" in [text.get_text() for text in shares.get_legend().get_texts()]
+    assert "raw" in [text.get_text() for text in legend.get_texts()]
 
 
 def test_values_without_an_order_can_be_drawn_too():

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import laglab
-from laglab.results.replaying import replayed_run
-from laglab.results.shadows import read_shadow
+from laglab.results.replaying import draw_replays, replayed_run, replays_table
+from laglab.results.shadows import COLUMNS, read_shadow
+from laglab.scenario import load
 from laglab_gateway import read_trace
 from laglab_protocol import Measurement, Sender, Tick, read_tlog, tlog_record
 
@@ -54,6 +55,22 @@ def test_several_filters_in_one_table_and_one_picture(ended, run, tmp_path):
     assert all(name in table for name in names)
     assert (out / "replay.png").read_bytes().startswith(b"\x89PNG")
     assert np.abs(estimates(out / "popf.csv") - estimates(out / "ekf.csv")).max() > 0.01
+
+
+def test_without_true_poses_nothing_is_called_true(run):
+    trace = read_trace(run / "trace.csv")
+    real = trace | {axis: np.full(len(trace["tick"]), np.nan) for axis in ("x", "y", "theta")}
+    replays = {"raw": {name: np.arange(3.0) for name in COLUMNS}}
+    for told, wanted in ((trace, ["true", "raw"]), (real, ["raw"])):
+        figure = draw_replays(load("lab"), [], replays, told)
+        above, below = figure.axes[0], figure.axes[3]
+        drawn = [line.get_label() for line in above.lines]
+        assert [label for label in drawn if label in ("true", "raw")] == wanted
+        assert ("measured" in below.get_ylabel()) == (told is real)
+        assert [text.get_text() for text in below.get_legend().get_texts()] == ["±2σ claimed"]
+        assert ("from measured" in replays_table(replays, told).columns[-1].header) == (
+            told is real
+        )
 
 
 def test_a_log_alone_is_enough_with_a_scenario_for_model_and_prior(ended, run, tmp_path):

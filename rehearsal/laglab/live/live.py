@@ -44,7 +44,11 @@ class LivePage:
 
 @contextmanager
 def live_page(
-    scenario: Scenario, place: Place, origin: str, station_alone: bool = False
+    scenario: Scenario,
+    place: Place,
+    origin: str,
+    station_alone: bool = False,
+    measured: bool = False,
 ) -> Iterator[LivePage]:
     """A page, open to whoever has its address; gone at the end.
 
@@ -52,7 +56,7 @@ def live_page(
     """
     token, secret = secrets.token_urlsafe(SECRET_BYTES), secrets.token_hex(SECRET_BYTES)
     order = LiveOrder(
-        scenario.to_toml(), place.host, place.port, token, secret, station_alone, origin
+        scenario.to_toml(), place.host, place.port, token, secret, station_alone, measured, origin
     )
     inbox: Inbox = Queue()
     with started("live page", "laglab.live.server:serve", order, inbox):

@@ -59,6 +59,8 @@ class LiveOrder(Struct, frozen=True):
     token: str
     secret: str
     station_alone: bool
+    measured: bool
+    """Whether nobody knows the true pose, as of a real robot."""
     origin: str
     """What was run, in a line."""
 

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from laglab.live.messages import Rows
+from laglab.live.messages import LiveOrder, Rows
 from laglab.live.stream import tables_in
 from laglab.results.report.page import INSIDE, Page, Panel, html, text_of
 from laglab.scenario import Scenario
@@ -11,15 +11,15 @@ SELF = INSIDE | {"connect-src": "'self'"}
 """It also calls whoever served it."""
 
 
-def page_html(scenario: Scenario, origin: str, controls: bool) -> str:
-    """The whole page; with the buttons for who may press them."""
+def page_html(scenario: Scenario, order: LiveOrder, controls: bool) -> str:
+    """The whole page, of the scenario as ordered; with the buttons for who may press them."""
     panel = Panel(
         name=scenario.name,
         scenario=scenario,
         tables=tables_in(Rows(), scenario),
-        measured=False,
+        measured=order.measured,
         timed=scenario.pace == "realtime",
-        origin=origin,
+        origin=order.origin,
     )
     page = Page(
         title=f"{scenario.name}, live: {scenario.gist}",

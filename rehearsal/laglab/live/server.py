@@ -57,7 +57,7 @@ class _Server(asyncio.DatagramProtocol):
         self._scenario = Scenario.from_toml(order.scenario)
         self._door = Door(Place(order.host, order.port), order.token)
         self._pages = {
-            controls: page_html(self._scenario, order.origin, controls).encode()
+            controls: page_html(self._scenario, order, controls).encode()
             for controls in (False, True)
         }
         self._known = Known()

@@ -16,13 +16,20 @@ from laglab.results.columns import places, read_columns
 from laglab.results.figures import INCHES, Width, legend, line, printed, sheet
 from laglab.results.figures.panels import (
     COMPONENTS,
-    ERRORS,
     around,
     draw_measured,
+    error_label,
     marked,
     symmetric,
 )
-from laglab.results.numbers import AXES, VARIANCES, deviation, rms_error, robot_pose
+from laglab.results.numbers import (
+    AXES,
+    VARIANCES,
+    deviation,
+    is_measured,
+    rms_error,
+    robot_pose,
+)
 from laglab.results.run import Kept, Run, open_run
 from laglab.results.shadows import Shadow
 from laglab.scenario import Scenario
@@ -58,15 +65,20 @@ def rms_deviation(replayed: Shadow, trace: Trace) -> list[float]:
 
 
 def replays_table(replays: Replays, trace: Trace | None) -> Table:
-    """One line a filter: its last estimate; where the true poses are known, its RMS deviation."""
+    """One line a filter: its last estimate; where there is a trace, its RMS deviation from the true
+    poses, or from what was measured where those are not known."""
     table = plain_table()
     headings = ["filter", "ticks", "x, y, θ at the end"]
-    for heading in headings + (["RMS deviation in x, y, θ"] if trace else []):
+    for heading in headings + ([_deviation_heading(trace)] if trace else []):
         table.add_column(heading)
     for name, replayed in replays.items():
         cells = [name, str(len(replayed["tick"])), _spelled(estimates(replayed)[-1].tolist())]
         table.add_row(*cells, *([_spelled(rms_deviation(replayed, trace))] if trace else []))
     return table
+
+
+def _deviation_heading(trace: Trace) -> str:
+    return f"RMS deviation {'from measured' if is_measured(trace) else 'in'} x, y, θ"
 
 
 def replayed_run(directory: Path, replays: Replays) -> Run:
@@ -98,7 +110,8 @@ def draw_replays(
     width: Width = "two",
 ) -> Figure:
     """Each component over time: measurements, estimates and, where known, the true pose; below
-    what each estimate was off by, between ±2σ of what it claims."""
+    what each estimate was off by from it, or else from what was measured, between ±2σ of what it
+    claims."""
     rows = 2 if trace else 1
     with printed():
         figure = sheet(INCHES[width], 0.3 + 1.5 * rows if width == "two" else 1.2 * 3 * rows)
@@ -109,7 +122,8 @@ def draw_replays(
             _draw_estimates(panels[i], scenario, sampled, replays, trace, i)
             if trace:
                 _draw_deviations(panels[3 + i], scenario, replays, trace, i)
-        legend(panels[0])
+        for axes in panels[:: len(panels) // rows]:
+            legend(axes)
         figure.align_ylabels()
     return figure
 
@@ -124,7 +138,7 @@ def _draw_estimates(
 ) -> None:
     Ts = scenario.sample_time
     draw_measured(axes, [z.tick * Ts for z in sampled], [z.pose[i] for z in sampled])
-    if trace:
+    if trace and not is_measured(trace):
         axes.plot(trace["tick"] * Ts, robot_pose(trace)[:, i], "k:", zorder=3, label="true")
     for number, (name, replayed) in enumerate(replays.items()):
         time, values = replayed["tick"] * Ts, estimates(replayed)[:, i]
@@ -138,14 +152,14 @@ def _draw_deviations(
     axes: Axes, scenario: Scenario, replays: Replays, trace: Trace, i: int
 ) -> None:
     errors, claims = [], []
-    for number, (name, replayed) in enumerate(replays.items()):
+    for number, replayed in enumerate(replays.values()):
         said, error = off(replayed, trace)
         time = said["tick"] * scenario.sample_time
-        marked(axes, time, error[:, i], line(number), number, name)
+        marked(axes, time, error[:, i], line(number), number, "")  # named above
         errors.append(error[:, i])
         two_sigma = 2 * np.sqrt(np.maximum(said[VARIANCES[i]], 0))
         claims.append(two_sigma)
-        for edge in (-two_sigma, two_sigma):
-            axes.plot(time, edge, color=line(number).color, linewidth=0.4)
+        for edge, label in ((-two_sigma, ""), (two_sigma, "" if number else "±2σ claimed")):
+            axes.plot(time, edge, color=line(number).color, linewidth=0.4, label=label)
     symmetric(axes, errors, np.concatenate(claims))
-    axes.set(xlabel="t [s]", ylabel=ERRORS[i])
+    axes.set(xlabel="t [s]", ylabel=error_label(i, is_measured(trace)))

@@ -35,7 +35,8 @@ def shown_live(
         return
     require(SEEING)
     origin = f"Side: {way.side}; over {way.transport}; plant {way.plant}; seed {scenario.seed}."
-    with live_page(scenario, place_of(live or "0"), origin, way.side == "station") as page:
+    alone, measured = way.side == "station", way.plant != scenario.plant.called
+    with live_page(scenario, place_of(live or "0"), origin, alone, measured) as page:
         if warning := page.warning:
             say(f"warning: {warning}")
         say(f"live at {page.address}")

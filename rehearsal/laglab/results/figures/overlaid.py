@@ -32,8 +32,11 @@ NAMES = (*COMPONENTS, "error", *SPEEDS, *DIRECTIONS)
 
 
 def draw_runs(runs: Sequence[Run], width: Width = "two") -> Figure:
-    """The paths; x, y, θ; how far each estimate was from the robot; speeds and delays. The title
-    says in which keys the scenarios differ. Raises: ResultsError, TraceError."""
+    """The paths; x, y, θ; how far each estimate was from the robot, or from where it was measured,
+    as it then says; speeds and delays. The title says in which keys the scenarios differ.
+
+    Raises: ResultsError, TraceError.
+    """
     told = [shown(run) for run in runs]
     names = labels(runs)
     unit = clock(max(each.time[-1] * each.clock.seconds for each in told))
@@ -96,13 +99,15 @@ def _draw(axes: Axes, name: str, told: Sequence[Shown], names: Sequence[str], un
     axes.set(xlabel=unit.label, ylabel=LABELS.get(name, name))
     if name in FROM_NOTHING:
         axes.set_ylim(0, max(1.1 * axes.dataLim.y1, FROM_NOTHING[name]))
+    if name == "error" and any(each.is_measured for each in told):
+        legend(axes)
 
 
 def _extremes(values: NDArray[np.float64]) -> tuple[float, float]:
     return float(values.min()), float(values.max())
 
 
-FROM_NOTHING: Mapping[str, float] = {"error": 1e-6, **dict.fromkeys(DIRECTIONS, 1.0)}
+FROM_NOTHING: Mapping[str, float] = {"error": 1e-3, **dict.fromkeys(DIRECTIONS, 1.0)}
 """What is never below 0, and how much is shown of it at least."""
 LABELS: Mapping[str, str] = {
     "error": "position\nerror [m]",
@@ -115,7 +120,8 @@ def _draw_paths(axes: Axes, told: Sequence[Shown], names: Sequence[str]) -> None
     for number, (each, name) in enumerate(zip(told, names, strict=True)):
         look = line(number)
         pose = each.pose
-        marked(axes, pose[:, 0], pose[:, 1], look, number, name)
+        label = f"{name}, measured" if each.is_measured else name
+        marked(axes, pose[:, 0], pose[:, 1], look, number, label)
         draw_headings(axes, pose[np.isfinite(pose).all(axis=1)], look.color)
     mark_ends(axes, told[0].pose[:1], told[0].target)
     fit(axes, [each.pose for each in told], told[0].target)
@@ -148,4 +154,6 @@ def _draw_over_time(
         **{speed: each.trace[speed] for speed in SPEEDS},
         "error": np.hypot(*each.error[:, :2].T),
     }[name]
+    if name == "error" and each.is_measured:
+        label += ", less measured"
     marked(axes, each.time * scale, values, look, number, label)

@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 
 COMPONENTS = ("x [m]", "y [m]", "θ [rad]")
 ERRORS = ("x error [m]", "y error [m]", "θ error [rad]")
+LESS_MEASURED = ("x less\nmeasured [m]", "y less\nmeasured [m]", "θ less\nmeasured [rad]")
+"""The same where the true pose is not known."""
 SPEEDS = {"v": "v [m/s]", "omega": "ω [rad/s]"}
 ROOM = 1.2
 """How many times as large as what is in it a panel is."""
@@ -89,8 +91,13 @@ def draw_error(axes: Axes, shown: Shown, i: int) -> None:
     else:
         axes.plot(shown.time, error, color=BLACK, linewidth=0.7, label="error", zorder=2)
     axes.axhline(0.0, color=GREY, linewidth=0.5, linestyle=":")
-    axes.set_ylabel(ERRORS[i])
+    axes.set_ylabel(error_label(i, shown.is_measured))
     symmetric(axes, [error], two_sigma)
+
+
+def error_label(i: int, measured: bool) -> str:
+    """Of the estimate's error in x, y or θ; `measured`: the true pose is not known."""
+    return (LESS_MEASURED if measured else ERRORS)[i]
 
 
 def symmetric(axes: Axes, errors: list[Array], two_sigma: Array) -> None:
@@ -114,7 +121,7 @@ def draw_shadows(axes: Axes, shown: Shown, i: int) -> None:
     for number, (name, error) in enumerate(zip(names, errors, strict=True)):
         marked(axes, shown.time, error[:, i], line(number), number, name)
     axes.axhline(0.0, color=GREY, linewidth=0.5, linestyle=":")
-    axes.set_ylabel(ERRORS[i])
+    axes.set_ylabel(error_label(i, shown.is_measured))
     symmetric(axes, [error[:, i] for error in errors], np.empty(0))
 
 

@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING
 
 from laglab.errors import ResultsError
 from laglab.results.figures.marks import time_axis
-from laglab.results.figures.panels import draw_component, draw_error, draw_shadows, draw_speed
+from laglab.results.figures.panels import (
+    SPEEDS,
+    draw_component,
+    draw_error,
+    draw_shadows,
+    draw_speed,
+)
 from laglab.results.figures.plane import draw_path
 from laglab.results.figures.shown import Shown, shown
 from laglab.results.figures.strip import draw_delays
@@ -120,9 +126,11 @@ def _draw(axes: Axes, told: Shown, name: str, bottom: bool) -> None:
             draw_shadows(axes, told, "xyθ".index(component))
         case _:
             draw_component(axes, told, "xyθ".index(name))
-    if component in ("x", "v", "omega"):
-        legend(axes, _row(axes) if kind == "shadow" else 1.0)
+    if name in SPEEDS:  # whose marks the other panels name
+        legend(axes)
     time_axis(axes, told, bottom)
+    if component == "x":
+        legend(axes, _row(axes) if kind == "shadow" else 1.0)
 
 
 def _row(axes: Axes) -> float:

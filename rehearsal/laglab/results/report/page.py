@@ -116,7 +116,9 @@ def _run(
 def _plots(panel: Panel, number: int, axes: Axes, plane: Plane, high: int) -> Plots:
     sources = sources_of(panel.tables, number)
     path = path_plot(sources, panel.scenario, plane, panel.measured, high)
-    return {"path": path} | time_plots(sources, panel.scenario, axes, panel.timed, panel.quiet)
+    return {"path": path} | time_plots(
+        sources, panel.scenario, axes, panel.timed, panel.quiet, panel.measured
+    )
 
 
 def _settings(panels: Sequence[Panel]) -> Markup:

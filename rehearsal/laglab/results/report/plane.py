@@ -4,7 +4,16 @@ from bokeh.models import DataRange1d, HoverTool
 from bokeh.plotting import figure
 
 from laglab.results.figures.style import BLUE, GREEN, RED
-from laglab.results.report.plots import BLACK, GREY, dressed, heading, legend_above
+from laglab.results.report.plots import (
+    BLACK,
+    GREY,
+    LEFT,
+    dressed,
+    heading,
+    is_there,
+    legend_above,
+    named,
+)
 from laglab.results.report.sources import Sources
 from laglab.scenario import Scenario, Target
 
@@ -22,7 +31,7 @@ def path_plot(
     """The path as it was, as estimated and as measured; over it the robot, twice the deviation
     claimed for where it is, and the way that the commands in flight will take it."""
     plot = figure(
-        title=heading("path [m]"),
+        title=heading("path"),
         height=height,
         sizing_mode="stretch_width",
         tools="pan,box_zoom,wheel_zoom,reset,save",
@@ -30,6 +39,9 @@ def path_plot(
         match_aspect=True,
         x_range=plane.x,
         y_range=plane.y,
+        x_axis_label="x [m]",
+        y_axis_label="y [m]",
+        min_border_left=LEFT,
         min_border_right=8,
     )
     dressed(plot)
@@ -54,7 +66,7 @@ def _paths(plot: figure, sources: Sources, measured: bool) -> None:
         color=BLUE,
         line_dash="dashed",
         line_width=1.4,
-        legend_label="estimated",
+        **named("estimated", is_there(sources, "x_est")),
     )
     tips = [("t", "@time{0.00} s"), ("x̂", "@x_est{0.000} m"), ("ŷ", "@y_est{0.000} m")]
     plot.add_tools(HoverTool(renderers=[path], tooltips=tips, visible=False))
@@ -70,7 +82,7 @@ def _robot(plot: figure, sources: Sources) -> None:
         color=BLUE,
         fill_alpha=0.2,
         line_width=1.2,
-        legend_label="2σ claimed",
+        **named("2σ claimed", is_there(sources, "p_xx")),
     )
     flight = sources.flight
     plot.line("x", "y", source=flight, color=RED, line_width=2.5, legend_label="commands in flight")

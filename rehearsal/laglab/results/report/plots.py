@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+import numpy as np
 from bokeh.models import (
     CDSView,
     DataRange1d,
@@ -38,6 +39,8 @@ CAUSES = {
 """Of a lost frame: its marker and colour."""
 TOOLS = "xpan,box_zoom,xwheel_zoom,reset,save"
 HEIGHT = 210
+LEFT = 84
+"""[pixel] Left of a plot: what its numbers need later too, as a live page's do."""
 
 
 @dataclass
@@ -68,13 +71,19 @@ Plots = dict[str, figure]
 
 
 def time_plots(
-    sources: Sources, scenario: Scenario, axes: Axes, timed: bool, quiet: Sequence[Time]
+    sources: Sources,
+    scenario: Scenario,
+    axes: Axes,
+    timed: bool,
+    quiet: Sequence[Time],
+    measured: bool = False,
 ) -> Plots:
     """Errors, heading, speeds, link; how late ticks began, if they were `timed`; `quiet`: when
-    nothing got through."""
+    nothing got through; `measured`: the true pose is not known."""
+    off = "estimate less measurement" if measured else "estimate less robot"
     shadows = scenario.estimator.compare
     plots = {
-        f"{axis} error": _error_plot(sources, axes, axis, label, unit, shadows)
+        f"{axis} error": _error_plot(sources, axes, axis, f"{label} [{unit}]", off, shadows)
         for axis, label, unit in (("x", "x", "m"), ("y", "y", "m"), ("theta", "θ", "rad"))
     }
     plots["goal"] = _lines(
@@ -109,7 +118,7 @@ def _plot(
         active_drag="box_zoom",
         x_range=axes.time,
         y_range=axes.values(title) if values is None else values,
-        min_border_left=84,
+        min_border_left=LEFT,
         min_border_right=8,
         output_backend="canvas",
     )
@@ -138,7 +147,10 @@ NAMES_IN_A_ROW = 3
 
 
 def legend_above(plot: figure) -> None:
-    """Out of the data's way, in rows that a narrow page has room for; a click hides a curve."""
+    """Out of the data's way, in rows that a narrow page has room for; a click hides a curve. None
+    where nothing has a name."""
+    if not plot.legend:
+        return
     legend: Legend = plot.legend[0]
     legend.orientation = "horizontal"
     legend.ncols = min(NAMES_IN_A_ROW, len(legend.items))
@@ -165,7 +177,7 @@ def _add(plot: figure, sources: Sources, line: Line) -> None:
         "color": line.color,
         "line_dash": line.dash,
         "line_width": line.width,
-        "legend_label": line.label,
+        **named(line.label, is_there(sources, line.column)),
     }
     drawn: GlyphRenderer[Any]
     if line.step:
@@ -177,25 +189,37 @@ def _add(plot: figure, sources: Sources, line: Line) -> None:
 
 
 def _error_plot(
-    sources: Sources, axes: Axes, axis: str, label: str, unit: str, shadows: Sequence[str]
+    sources: Sources, axes: Axes, axis: str, label: str, off: str, shadows: Sequence[str]
 ) -> figure:
-    plot = _plot(axes, f"error of the estimate in {label} [{unit}]")
-    plot.varea(
-        "time",
-        f"{axis}_below",
-        f"{axis}_above",
-        source=sources.ticks,
-        color=BLUE,
-        fill_alpha=0.16,
-        legend_label="±2σ claimed",
-    )
-    _add(plot, sources, Line(f"{axis}_error", "estimate − robot", BLUE))
+    plot = _plot(axes, f"error of the estimate in {label}")
+    if is_there(sources, f"{axis}_above"):
+        plot.varea(
+            "time",
+            f"{axis}_below",
+            f"{axis}_above",
+            source=sources.ticks,
+            color=BLUE,
+            fill_alpha=0.16,
+            legend_label="±2σ claimed",
+        )
+    _add(plot, sources, Line(f"{axis}_error", off, BLUE))
     for number, name in enumerate(shadows):
         color, dash = OTHERS[number % len(OTHERS)], DASHES[number % len(DASHES)]
         _add(plot, sources, Line(f"{axis}_error_{name}", name, color, dash, width=1.3))
     plot.add_layout(Span(dimension="width", location=0.0, line_color=GREY, line_width=1))
     legend_above(plot)
     return plot
+
+
+def named(label: str, there: bool) -> dict[str, Any]:
+    """What names a glyph in the legend, if there is anything of it."""
+    return {"legend_label": label} if there else {}
+
+
+def is_there(sources: Sources, column: str) -> bool:
+    """Whether the run has any of it, or may still get some, as a page that is live."""
+    there = np.asarray(sources.ticks.data[column], dtype=float)
+    return not len(there) or bool(np.isfinite(there).any())
 
 
 def _speed_plot(sources: Sources, axes: Axes, name: str, title: str) -> figure:
@@ -230,6 +254,7 @@ def _delay_plot(sources: Sources, axes: Axes) -> figure:
 def _mark_plot(sources: Sources, axes: Axes) -> figure:
     lanes = FactorRange(factors=list(LANES))
     plot = _plot(axes, "lost, by cause; refused; stops; alarms", lanes)
+    to_come, marked = not len(sources.ticks.data["time"]), set(sources.marks.data["what"])
     for cause, (marker, color) in CAUSES.items():
         view = CDSView(filter=GroupFilter(column_name="what", group=cause))
         plot.scatter(
@@ -241,7 +266,7 @@ def _mark_plot(sources: Sources, axes: Axes) -> figure:
             size=8,
             fill_alpha=0,
             line_color=color,
-            legend_label=cause,
+            **named(cause, to_come or cause in marked),
         )
     causes = [GroupFilter(column_name="what", group=cause) for cause in CAUSES]
     others = CDSView(filter=InversionFilter(operand=UnionFilter(operands=causes)))
@@ -253,7 +278,6 @@ def _mark_plot(sources: Sources, axes: Axes) -> figure:
     plot.ygrid.grid_line_color = None
     plot.xaxis.axis_label = "t [s]"
     legend_above(plot)
-    plot.legend[0].ncols = 3
     return plot
 
 

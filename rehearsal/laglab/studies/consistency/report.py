@@ -80,6 +80,7 @@ def draw_consistency(
             row[0].set_ylabel(short(verdict.estimator))
         for axes, name in zip(panels[0], _averages(verdicts[0]), strict=True):
             axes.set_title(name)
+            _few_numbers(axes)
         for i, (axes, name) in enumerate(zip(below.subplots(1, 3), AXES, strict=True)):
             _draw_claims(axes, name, time, verdicts, i)
         legend(below.axes[0])
@@ -117,4 +118,19 @@ def _draw_claims(
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = verdict.claimed[:, component] / verdict.true[:, component]
         marked(axes, time, ratio, line(number), number, verdict.estimator)
-    axes.set(xlabel="t [s]", ylabel=f"σ of {name}: claimed / true")
+    _few_numbers(axes)
+    axes.set(xlabel="t [s]", ylabel=f"σ of {name}:\nclaimed / true")
+
+
+def _few_numbers(axes: Axes) -> None:
+    """Beside the logarithmic axis: powers of ten, or plain numbers where there are not two of them.
+    What matplotlib says in between them overlaps."""
+    from matplotlib.ticker import MaxNLocator, NullFormatter, NullLocator
+
+    axis = axes.yaxis
+    axis.set_minor_formatter(NullFormatter())
+    low, high = np.log10(axes.get_ylim())
+    if np.floor(high) - np.ceil(low) < 1:
+        axis.set_major_locator(MaxNLocator(4))
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_locator(NullLocator())

@@ -82,6 +82,9 @@ def _title(runs: StudyRuns, chosen: Layout) -> str:
     seeds = len(set(runs.columns["seed"].tolist())) if "seed" in runs.columns else 0
     total = len(runs.columns[chosen.x])
     told = f"{runs.name}: {total} runs" + (f", {seeds} seeds" if seeds > 1 else "")
-    if chosen.averaged:
-        told += f"; all of {', '.join(chosen.averaged)} together"
-    return told
+    return "; ".join([told, *together(chosen)])
+
+
+def together(chosen: Layout) -> list[str]:
+    """Which keys are not told apart, in words; nothing if all are."""
+    return [f"all of {', '.join(chosen.averaged)} together"] if chosen.averaged else []

@@ -6,6 +6,7 @@ written, hatched or dotted.
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -29,6 +30,8 @@ CELL = (0.66, 0.42)
 """[inches] The least of a cell in which numbers can be read."""
 LEAST, MOST = 1.8, 5.0
 """[inches] Sides of a panel."""
+LETTER = 0.085
+"""[inches] Of a panel's title, about."""
 WIDE = 10.0
 """A ratio of values above which the scale is logarithmic."""
 
@@ -66,7 +69,9 @@ def draw_maps(by: Layout, into: Sorted, maps: Sequence[Map], margins: Sequence[P
     width = min(max(len(into.x) * CELL[0], LEAST), MOST)
     height = min(max(len(into.y) * CELL[1], LEAST), MOST)
     written = width / len(into.x) > 0.9 * CELL[0] and height / len(into.y) > 0.9 * CELL[1]
-    figure = sheet(1.9 + (width + 0.15) * len(into.panels), 1.3 + (height + 0.4) * len(maps))
+    titles = [_wrapped(panel_label(by.panels, value), width) for value in into.panels]
+    high = 1.3 + 0.16 * max(title.count("\n") for title in titles) + (height + 0.4) * len(maps)
+    figure = sheet(1.9 + (width + 0.15) * len(into.panels), high)
     grid = figure.subplots(len(maps), len(into.panels), squeeze=False, sharex=True, sharey=True)
     for row, each in zip(grid, maps, strict=True):
         look = _look(each, written)
@@ -76,15 +81,20 @@ def draw_maps(by: Layout, into: Sorted, maps: Sequence[Map], margins: Sequence[P
             draw_border(axes, margin)
         colours = ScalarMappable(look.scale, look.colours)
         figure.colorbar(colours, ax=list(row), label=each.of.label, pad=0.01, aspect=15)
-    _name(grid, by, into)
+    _name(grid, by, into, titles)
     dotted = not written and any(each.of.share for each in maps)
     explain(figure, [field for each in maps for field in each.fields], margins, dotted)
     return figure
 
 
-def _name(grid: NDArray[np.object_], by: Layout, into: Sorted) -> None:
-    for axes, value in zip(grid[0], into.panels, strict=True):
-        axes.set_title(panel_label(by.panels, value), fontsize="medium")
+def _wrapped(title: str, width: float) -> str:
+    """In as many lines as a panel of this width [inches] needs."""
+    return textwrap.fill(title, int(width / LETTER))
+
+
+def _name(grid: NDArray[np.object_], by: Layout, into: Sorted, titles: Sequence[str]) -> None:
+    for axes, title in zip(grid[0], titles, strict=True):
+        axes.set_title(title, fontsize="medium")
     for axes in grid[-1]:
         axes.set_xlabel(key_label(by.x))
         axes.set_xticks(*tick_labels(into.x))
@@ -114,8 +124,6 @@ def _scale(each: Map) -> Normalize:
 
 
 def _draw(axes: Axes, field: Field, look: Look) -> None:
-    from matplotlib.patheffects import withStroke
-
     rows, columns = field.centre.shape
     axes.set_facecolor(NOTHING)
     axes.pcolormesh(
@@ -131,9 +139,7 @@ def _draw(axes: Axes, field: Field, look: Look) -> None:
         ink = look.ink(centre)
         if look.written:
             text = in_cell(estimate, look.of.share)
-            clear = [withStroke(linewidth=2, foreground=look.colour(centre))]
-            axes.annotate(
-                text, (x, y), color=ink, fontsize=7, path_effects=clear, ha="center", va="center"
-            )
+            ground = {"boxstyle": "square,pad=0.03", "fc": look.colour(centre), "lw": 0}
+            axes.text(x, y, text, color=ink, fontsize=7, bbox=ground, ha="center", va="center")
         elif look.of.share and estimate.low < HALF < estimate.high:
             axes.plot(x, y, ".", color=ink, markersize=3)

@@ -34,8 +34,9 @@ def draw_lines(by: Layout, into: Sorted, maps: Sequence[Map], base: Scenario | N
         _draw(axes, by, into, each)
         if base is not None and by.x in DELAYS:
             _mark_margin(axes, base, by.x)
-    if panels[0].get_legend_handles_labels()[0]:
-        panels[0].legend(fontsize="small")
+    handles, names = panels[0].get_legend_handles_labels()
+    if names:
+        figure.legend(handles, names, loc="outside lower center", ncols=2, fontsize="small")
     if all(map(_is_number, into.x)) and _is_wide(np.array(into.x, dtype=float)):
         panels[-1].set_xscale("log")
     panels[-1].set_xlabel(key_label(by.x))

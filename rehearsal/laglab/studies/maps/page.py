@@ -24,7 +24,7 @@ from laglab.results.report.page import (
     text_of,
 )
 from laglab.results.report.plots import dressed, heading
-from laglab.studies.maps.drawing import telling
+from laglab.studies.maps.drawing import telling, together
 from laglab.studies.maps.grid import Field, Sorted, fields, sorted_into
 from laglab.studies.maps.labels import in_cell, key_label, panel_label, value_label
 from laglab.studies.maps.marks import ink
@@ -61,7 +61,7 @@ def _html(study: Study, runs: StudyRuns, lines: Sequence[str]) -> str:
     return template("laglab.studies.maps", "page.html").render(
         title=study.name,
         description=study.description,
-        lines=lines,
+        lines=[*lines, *together(by)],
         rows=[(label, [Markup(divs[name]) for name in names]) for label, names in rows],
         study=to_toml(study, study.origin),
         policy=policy_of(INSIDE),

@@ -80,7 +80,8 @@ class Layout(NamedTuple):
 
 
 def layout(runs: StudyRuns, x: str | None = None, y: str | None = None) -> Layout:
-    """The two keys with the most values, numbers first, are x and y; the next one makes panels.
+    """The two keys with the most values, numbers first, are x and y; panels are made by a key that
+    is on no scale, as a filter's name, and else by the next one.
 
     Raises: StudyError, when `x` or `y` is no key of the grid, or nothing was varied.
     """
@@ -102,7 +103,7 @@ def layout(runs: StudyRuns, x: str | None = None, y: str | None = None) -> Layou
         y = numeric[0]
     left = [key for key in left if key != y]
     few = [key for key in left if len(runs.values(key)) <= MOST_PANELS]
-    panels = few[0] if few else None
+    panels = next((key for key in few if not runs.is_numeric(key)), few[0] if few else None)
     return Layout(x, y, panels, tuple(key for key in left if key != panels))
 
 
