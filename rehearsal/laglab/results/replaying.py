@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+UNITS = "[m, m, rad]"
 Replays = Mapping[str, Shadow]
 
 
@@ -68,7 +69,7 @@ def replays_table(replays: Replays, trace: Trace | None) -> Table:
     """One line a filter: its last estimate; where there is a trace, its RMS deviation from the true
     poses, or from what was measured where those are not known."""
     table = plain_table()
-    headings = ["filter", "ticks", "x, y, θ at the end"]
+    headings = ["filter", "ticks", f"x, y, θ at the end {UNITS}"]
     for heading in headings + ([_deviation_heading(trace)] if trace else []):
         table.add_column(heading)
     for name, replayed in replays.items():
@@ -78,7 +79,7 @@ def replays_table(replays: Replays, trace: Trace | None) -> Table:
 
 
 def _deviation_heading(trace: Trace) -> str:
-    return f"RMS deviation {'from measured' if is_measured(trace) else 'in'} x, y, θ"
+    return f"RMS deviation {'from measured' if is_measured(trace) else 'in'} x, y, θ {UNITS}"
 
 
 def replayed_run(directory: Path, replays: Replays) -> Run:

@@ -69,7 +69,7 @@ def trust_table(of: Scores, stations: Sequence[str], seeds: int) -> Table:
         f"were within {FOUND:g} m of the robot {LOOKED_AT_AFTER:g} s later",
     )
     table.add_column("", no_wrap=True)
-    for name in (*stations, "RMS", "NEES", "alarm", "found"):
+    for name in (*stations, "RMS [m]", "NEES", "alarm", "found"):
         table.add_column(re.sub("(-|, )", r"\1\n", name), justify="right", vertical="bottom")
     for condition in dict.fromkeys(condition for condition, _ in of):
         of_these = [of[condition, station] for station in stations]
