@@ -17,7 +17,7 @@ Pace = Literal["lockstep", "realtime"]
 Scope = Literal["all", "silence", "reading"]
 SCOPES: dict[Scope, list[Item[lockstep.LockstepSession]]] = {
     "all": lockstep.ITEMS,
-    "silence": lockstep.SILENCE,
+    "silence": lockstep.GIVING_UP,
     "reading": lockstep.READING,
 }
 
@@ -35,10 +35,12 @@ def conform(
 
     A robot is never told to go faster than 1e-6 m/s; `pace` says whether it waits for each command
     or has a clock of its own; `scope`, of one in lock-step, whether all is tried, or only whether
-    it gives up a silent station, or only how it reads frames; `progress` is told what is tried.
+    it gives up a silent station, or only how it reads frames; `progress` is told where it is, and
+    then what is tried.
     Raises the EndpointError and KeyFileError trees.
     """
     with open_endpoint(url) as endpoint:
+        progress(f"testing the {side} at {endpoint.name}")
         talk = endpoint, waits or Waits(), key_file
         if side == "controller":
             results = carry_out(controller.ITEMS, controller.ControllerSession(*talk), progress)

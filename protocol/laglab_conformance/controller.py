@@ -56,8 +56,10 @@ class ControllerSession(Session):
         before = len(self.heard)
         self.send(*messages)
         if self.wait_for(Command, self.waits.react):
-            came = [frame.message for frame in self.heard[before:]]
-            return [message for message in came if isinstance(message, Said)]
+            came = (frame.message for frame in self.heard[before:])
+            said = [message for message in came if isinstance(message, Said)]
+            commands = (i for i, message in enumerate(said) if isinstance(message, Command))
+            return said[: next(commands) + 1]
         raise NoReactionError(f"no answer to {messages[-1]}")
 
 

@@ -52,7 +52,7 @@ def _gives_up(session: RobotSession) -> str | None:
         raise DoesNotApplyError(
             "its run is over and no heartbeat begins another: start it again, and say --silent"
         ) from error
-    began = time.monotonic()
+    began, session.silent = time.monotonic(), True
     while session.wait_for(Tick, session.waits.react / 2):
         silent = time.monotonic() - began
         if silent > SILENCE + session.waits.react:

@@ -9,6 +9,7 @@ from typing import Generic, TypeVar
 from laglab_conformance.forge import Forged
 from laglab_conformance.report import Mark, Result
 from laglab_conformance.session import DoesNotApplyError, NoReactionError, Session, Waits
+from laglab_protocol import End, EndpointError, EndReason
 
 SOON = 0.25
 """[s] Within this time a peer in lock-step reacts."""
@@ -48,7 +49,7 @@ def carry_out(
 
 
 def _not_tried(item: Item[AnySession]) -> Result:
-    reason = "not tried: the peer was not found"
+    reason = "not tried: without the first there is no talk"
     return Result(item.group, item.name, item.mandatory, Mark.SKIPPED, reason, 0.0)
 
 
@@ -63,10 +64,18 @@ def _result(item: Item[AnySession], session: AnySession) -> Result:
         mark, reason = Mark.FAILED, str(error)
     except DoesNotApplyError as error:
         mark, reason = Mark.SKIPPED, str(error)
+    except EndpointError:
+        raise
+    except Exception as error:  # whatever a stranger says, the other items are tried
+        mark, reason = Mark.FAILED, f"nothing can be made of what it says: {error!r}"
     if mark is Mark.FAILED and ended:
-        reason += f" (its run had ended at tick {ended.tick}: let it run longer)"
+        reason += f" (its run had ended at tick {ended.tick}: {_advice(ended)})"
     seconds = time.monotonic() - started
     return Result(item.group, item.name, item.mandatory, mark, reason, seconds)
+
+
+def _advice(ended: End) -> str:
+    return "let it run longer" if ended.reason == EndReason.COMPLETED else "it gave us up"
 
 
 def reacts_soon(session: Session) -> str | None:

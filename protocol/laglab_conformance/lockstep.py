@@ -1,9 +1,10 @@
 """The items of a robot in lock-step: each of its ticks waits for the command stamped with it."""
 
+import time
 from collections.abc import Callable
 from itertools import pairwise
 
-from laglab_conformance.ending import ENDS, GIVES_UP
+from laglab_conformance.ending import ENDS, GIVES_UP, SILENCE
 from laglab_conformance.forge import Forged
 from laglab_conformance.framing import RECEIVING, SENDING, SIGNING
 from laglab_conformance.items import SOON, Item, reacts_soon, refused
@@ -22,7 +23,7 @@ from laglab_conformance.robot import (
 from laglab_conformance.services import SERVICES
 from laglab_conformance.session import DoesNotApplyError, NoReactionError
 from laglab_conformance.stamps import STAMPED, no_earlier, tick_comes_first
-from laglab_protocol import Frame, Planned, Tick
+from laglab_protocol import STATION_HEARTBEAT, Frame, Planned, Tick
 
 NEVER = 10**6
 """[ticks] What is planned for so much later never comes into force."""
@@ -35,6 +36,16 @@ class LockstepSession(RobotSession):
 
     def is_reaction(self, frame: Frame) -> bool:
         return is_after(self.tick, frame)
+
+    def listen(self, seconds: float, until: Callable[[Frame], bool]) -> Frame | None:
+        """A robot gives up who says nothing: in a long wait it hears a heartbeat now and then."""
+        deadline = time.monotonic() + seconds
+        while (left := deadline - time.monotonic()) > SILENCE / 2:
+            if found := super().listen(min(left, SILENCE / 2), until):
+                return found
+            if not (self.over or self.silent):
+                self.send(STATION_HEARTBEAT)
+        return super().listen(left, until)
 
     def watch(self, until: Callable[[Frame], bool], seconds: float) -> Frame | None:
         """From tick to tick: each is answered by a plan that is meant for much later."""
@@ -123,7 +134,7 @@ ITEMS: list[Item[LockstepSession]] = [
     *ENDS,
     GIVES_UP,
 ]
-SILENCE: list[Item[LockstepSession]] = [BEGINS, GIVES_UP]
+GIVING_UP: list[Item[LockstepSession]] = [BEGINS, GIVES_UP]
 """For a robot that has but one run, which END would end."""
 READING: list[Item[LockstepSession]] = [BEGINS, *RECEIVING, *ENDS]
 """What hinges on how it reads frames."""

@@ -1,7 +1,7 @@
 """The items on plans: a robot goes on by one, and follows none that lacks a part."""
 
 from laglab_conformance.items import Item
-from laglab_conformance.robot import CREEP, RobotSession, creep, creeps, measurements
+from laglab_conformance.robot import CREEP, RobotSession, creep, creeps, newest_measurement
 from laglab_conformance.session import DoesNotApplyError, NoReactionError
 from laglab_protocol import Planned
 
@@ -28,7 +28,7 @@ def _stand(session: RobotSession) -> None:
     """Until its measurements tell that it stands: behind a delay they go on telling of the plan."""
     session.exchange()
     for _ in range(session.longest_delay):
-        if measurements(session)[-1].v == 0.0:
+        if newest_measurement(session).v == 0.0:
             break
         session.exchange()
 

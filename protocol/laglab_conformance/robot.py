@@ -51,6 +51,8 @@ class RobotSession(Session):
     """Within so many exchanges after the one that took a command, a measurement tells of it."""
     plans = False
     """Whether it was seen to go on by a plan."""
+    silent = False
+    """Whether it is to hear nothing from us."""
 
     def __init__(self, endpoint: Endpoint, waits: Waits, key_file: Path | None) -> None:
         super().__init__(endpoint, waits, key_file)
@@ -109,6 +111,14 @@ class RobotSession(Session):
 
 def is_after(tick: int, frame: Frame) -> bool:
     return isinstance(frame.message, Tick) and frame.message.tick > tick
+
+
+def newest_measurement(session: RobotSession) -> Measurement:
+    """Raises NoReactionError: none ever came."""
+    told = measurements(session)
+    if not told:
+        raise NoReactionError("no measurement came")
+    return told[-1]
 
 
 def measurements(session: RobotSession) -> list[Measurement]:
@@ -178,7 +188,7 @@ def _settings(session: RobotSession) -> str | None:
 def _recalls(session: RobotSession) -> str | None:
     """The speeds in force just before the newest measurement must be those that it told."""
     session.exchange()
-    newest = measurements(session)[-1]
+    newest = newest_measurement(session)
     if newest.tick == 0:
         raise DoesNotApplyError("nothing was in force before its first tick")
     asked, before = Recall(newest.tick - 1, 1, *session.peer), len(session.heard)

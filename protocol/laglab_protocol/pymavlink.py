@@ -6,7 +6,9 @@ pymavlink, such as mavproxy.py; the others are passed on, and `--dialect=laglab`
 
 import os
 import runpy
+import shutil
 import sys
+from importlib.util import find_spec
 from pathlib import Path
 
 from laglab_protocol.dialect.mavgen import offer_to_pymavlink
@@ -20,10 +22,15 @@ def main(arguments: list[str]) -> None:
     program, *rest = arguments
     sys.argv = [Path(program).name, "--dialect=laglab", *rest]
     offer_to_pymavlink()
+    tool = f"pymavlink.tools.{program}"
     if Path(program).suffix == ".py":
-        runpy.run_path(program, run_name="__main__")
+        if (found := shutil.which(program) or program) and not Path(found).is_file():
+            sys.exit(f"{program}: no such program here, nor on the PATH")
+        runpy.run_path(found, run_name="__main__")
+    elif find_spec(tool) is None:
+        sys.exit(f"{program}: no tool of pymavlink's, nor a path that ends in .py")
     else:
-        runpy.run_module(f"pymavlink.tools.{program}", run_name="__main__")
+        runpy.run_module(tool, run_name="__main__")
 
 
 if __name__ == "__main__":

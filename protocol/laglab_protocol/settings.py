@@ -31,29 +31,42 @@ SETTINGS = (
 )
 
 
-def refuse_other_sample_time(robot: Settings, station: Settings) -> None:
+class Parties(NamedTuple):
+    """Who was told what, and what to do where that is not the same pace."""
+
+    one: str = "the robot"
+    other: str = "the controller"
+    advice: str = "give both sides the same scenario"
+
+
+TWO_SIDES = Parties()
+
+
+def refuse_other_sample_time(
+    robot: Settings, station: Settings, parties: Parties = TWO_SIDES
+) -> None:
     """Raises SettingsError when the two do not tick at the same pace."""
     told = robot.sample_time, station.sample_time
     if all(map(math.isfinite, told)) and told[0] != told[1]:
         raise SettingsError(
-            f"the sample time is {told[0]:g} s for the robot and {told[1]:g} s for the controller: "
-            "give both sides the same scenario"
+            f"the sample time is {told[0]:g} s for {parties.one} and {told[1]:g} s for "
+            f"{parties.other}: {parties.advice}"
         )
 
 
-def differences(robot: Settings, station: Settings) -> str:
+def differences(robot: Settings, station: Settings, parties: Parties = TWO_SIDES) -> str:
     """What the two were told differently besides, in one line; empty when there is nothing."""
-    found = (_difference(setting, robot, station) for setting in SETTINGS)
+    found = (_difference(setting, robot, station, parties) for setting in SETTINGS)
     return "; ".join(filter(None, found))
 
 
-def _difference(setting: Setting, robot: Settings, station: Settings) -> str:
+def _difference(setting: Setting, robot: Settings, station: Settings, parties: Parties) -> str:
     theirs, ours = getattr(robot, setting.field), getattr(station, setting.field)
     same = ours <= theirs if setting.limit else ours == theirs
     if same or not (_is_known(theirs) and _is_known(ours)):
         return ""
     robots, stations = (_spelled(value, setting) for value in (theirs, ours))
-    return f"{setting.spelled}: {robots} for the robot, {stations} for the controller"
+    return f"{setting.spelled}: {robots} for {parties.one}, {stations} for {parties.other}"
 
 
 def _is_known(value: float) -> bool:

@@ -80,6 +80,23 @@ def test_every_language_is_generated(tmp_path: Path, language: str) -> None:
     assert any("laglab_measurement" in text for text in [*names, *texts])
 
 
+OWN = """<mavlink><include>common.xml</include><messages><message id="52990" name="OWN_{name}">
+<description>One.</description><field type="uint8_t" name="one">One.</field></message></messages>
+</mavlink>"""
+
+
+def test_a_dialect_beside_it_may_be_included(tmp_path: Path) -> None:
+    (tmp_path / "own.xml").write_text(OWN.format(name="FIRST"))
+    two = OWN.format(name="SECOND").replace("common.xml", "own.xml").replace("52990", "52991")
+    (tmp_path / "two.xml").write_text(two)
+    made = generate_into("Python3", tmp_path / "out", tmp_path / "two.xml").read_text()
+    assert "OWN_FIRST" in made
+    assert "OWN_SECOND" in made
+    (tmp_path / "own.xml").unlink()
+    with pytest.raises(DialectError, match=r"two\.xml includes 'own\.xml', which is neither"):
+        generate_into("Python3", tmp_path / "out", tmp_path / "two.xml")
+
+
 def test_a_language_that_there_is_not_is_said(tmp_path: Path) -> None:
     with pytest.raises(DialectError, match="COBOL"):
         generate_into("COBOL", tmp_path)

@@ -3,7 +3,13 @@
 import pytest
 from msgspec.structs import replace
 
-from laglab_protocol import Settings, differences
+from laglab_protocol import (
+    Parties,
+    Settings,
+    SettingsError,
+    differences,
+    refuse_other_sample_time,
+)
 
 TOLD = Settings(0.01, 0.05, 0.6, 1.0, 1.7, 10, 20)
 
@@ -26,3 +32,13 @@ def test_play_out_and_plan_are_compared_where_both_are_known(
     found = differences(robot, station)
     assert found.startswith(said)
     assert bool(found) == bool(said)
+
+
+def test_who_was_told_another_pace_is_named() -> None:
+    parties = Parties("the robot at udpout://x", "this gateway", "say --set sample_time=0.01")
+    with pytest.raises(SettingsError) as told:
+        refuse_other_sample_time(Settings(0.01), Settings(0.02), parties)
+    assert str(told.value) == (
+        "the sample time is 0.01 s for the robot at udpout://x and 0.02 s for this gateway: say "
+        "--set sample_time=0.01"
+    )

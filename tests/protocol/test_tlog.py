@@ -72,3 +72,12 @@ def test_mavlogdump_reads_it(log: Path) -> None:
 
     assert "LAGLAB_TICK {tick : 7, measurements : 0}" in done.stdout
     assert "LAGLAB_COMMAND {v : 0.25, omega : -1.5, tick : 7" in done.stdout
+
+
+@pytest.mark.parametrize("program", ["nothing", "nothing.py"])
+def test_a_program_that_there_is_not_is_one_line(program: str) -> None:
+    command = [sys.executable, "-m", "laglab_protocol.pymavlink", program]
+    told = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert told.returncode == 1
+    assert told.stderr.startswith(f"{program}: no ")
+    assert len(told.stderr.splitlines()) == 1

@@ -139,6 +139,18 @@ def test_each_expectation_can_fail(name: str) -> None:
     assert list(failures(WRONG[name])) == [name]
 
 
+def test_what_is_in_a_folder_is_no_soaks_to_take_away(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "turn-1").mkdir()
+    (tmp_path / "turn-1" / "notes").write_text("precious")
+    with pytest.raises(SystemExit) as ended:
+        main(["soak", "--minutes", "0.01", "--out", str(tmp_path)])
+    assert ended.value.code == 2
+    assert "turn-1 is there already" in capsys.readouterr().err
+    assert (tmp_path / "turn-1" / "notes").read_text() == "precious"
+
+
 def test_files_that_are_torn_or_out_of_order_are_told(tmp_path: Path) -> None:
     laglab.run("lab-radio", {"duration": 1.0}, out=tmp_path / "run")
     assert list(faults_of(tmp_path / "run", killed=False)) == []

@@ -15,6 +15,7 @@ from laglab_protocol import (
     EndReason,
     Frame,
     Listener,
+    Parties,
     Refusals,
     differences,
     refuse_other_sample_time,
@@ -95,8 +96,12 @@ class RobotLine:
         robot = self._relay.robot_settings
         if robot is None:
             return "the robot does not tell its settings: nothing to compare with ours"
-        refuse_other_sample_time(robot, self._relay.told_robot)
-        said = differences(robot, self._relay.told_robot)
+        told, pace = self._relay.told_robot, robot.sample_time
+        parties = Parties(
+            f"the robot at {self._link.name}", "this gateway", f"say --set sample_time={pace:g}"
+        )
+        refuse_other_sample_time(robot, told, parties)
+        said = differences(robot, told, parties)
         return f"the robot was told different things: {said}" if said else ""
 
     def forward(self) -> None:

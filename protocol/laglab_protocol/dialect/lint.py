@@ -10,12 +10,10 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
-from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
 from laglab_protocol.dialect.generated import laglab as generated
-from laglab_protocol.dialect.mavgen import carried_dialects
-from laglab_protocol.errors import DialectError
+from laglab_protocol.dialect.includes import carried_dialects, includes_of, parsed
 
 __all__ = [
     "Finding",
@@ -74,10 +72,10 @@ def lint(xml: Path) -> list[Finding]:
 
     Raises DialectError when the file cannot be read, or is no XML.
     """
-    root = _parse(xml)
+    root = parsed(xml)
     if root.tag != "mavlink":
         return [Finding(xml.name, f"its root is <{root.tag}>: a dialect's is <mavlink>")]
-    taken, missing = _included(root, xml)
+    taken, missing = _included(xml)
     enums, messages = root.findall("enums/enum"), root.findall("messages/message")
     known_enums = taken.enums | {_name(enum) for enum in enums}
     return [
@@ -93,42 +91,17 @@ def lint(xml: Path) -> list[Finding]:
     ]
 
 
-def _parse(xml: Path) -> Element:
-    try:
-        return ElementTree.fromstring(xml.read_bytes())
-    except OSError as error:
-        raise DialectError(f"cannot read {xml}: {error.strerror}") from error
-    except (ElementTree.ParseError, ValueError, LookupError) as error:
-        raise DialectError(f"{xml} is no XML: {error}") from error
-
-
-def _included(root: Element, xml: Path) -> tuple[Taken, list[Finding]]:
-    """What the included dialects take, each looked for beside `xml`, then in pymavlink."""
-    ids: set[int | None] = set()
-    messages: set[str] = set()
-    enums: set[str] = set()
-    missing = []
-    waiting, seen = _includes(root), set[str]()
-    while waiting:
-        name = waiting.pop()
-        path = next(
-            (p for p in (xml.parent / name, carried_dialects() / name) if p.is_file()), None
-        )
-        if path is None:
-            missing.append(Finding(xml.name, f"includes {name!r}, which is nowhere"))
-        elif name not in seen:
-            seen.add(name)
-            other = _parse(path)
-            ids |= {_number(each.get("id")) for each in other.iter("message")}
-            messages |= {_name(each) for each in other.iter("message")}
-            enums |= {_name(each) for each in other.iter("enum")}
-            waiting += _includes(other)
-    return Taken(frozenset(ids), frozenset(messages), frozenset(enums)), missing
-
-
-def _includes(root: Element) -> list[str]:
-    """Plain file names only: an include does not lead out of its folder."""
-    return [Path(each.text or "?").name or "?" for each in root.findall("include")]
+def _included(xml: Path) -> tuple[Taken, list[Finding]]:
+    """What the included dialects take; and which are nowhere."""
+    includes = includes_of(xml)
+    others = [parsed(path) for path in includes.found.values()]
+    ids = frozenset(_number(each.get("id")) for other in others for each in other.iter("message"))
+    messages = frozenset(_name(each) for other in others for each in other.iter("message"))
+    enums = frozenset(_name(each) for other in others for each in other.iter("enum"))
+    missing = [
+        Finding(xml.name, f"includes {name!r}, which is nowhere") for name in includes.missing
+    ]
+    return Taken(ids, messages, enums), missing
 
 
 def _duplicates(what: str, values: Iterable[str]) -> Iterator[Finding]:
@@ -207,7 +180,7 @@ def _identity(message: Element, where: str, taken: Taken) -> Iterator[Finding]:
 def _is_published(message: Element) -> bool:
     """Whether a dialect that pymavlink carries has the very same message."""
     xpath = f"messages/message[@id='{_number(message.get('id'))}']"
-    dialects = map(_parse, sorted(carried_dialects().glob("*.xml")))
+    dialects = map(parsed, sorted(carried_dialects().glob("*.xml")))
     return any(_shape(message) == _shape(each) for xml in dialects for each in xml.findall(xpath))
 
 

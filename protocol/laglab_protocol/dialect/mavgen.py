@@ -7,6 +7,7 @@ import tempfile
 from argparse import Namespace
 from pathlib import Path
 
+from laglab_protocol.dialect.includes import carried_dialects, includes_of
 from laglab_protocol.errors import DialectError
 
 __all__ = [
@@ -29,13 +30,6 @@ def dialect_path() -> Path:
     package = Path(__file__).parents[1]
     candidates = (package.parent / "laglab.xml", package / "laglab.xml")
     return next(path for path in candidates if path.is_file())
-
-
-def carried_dialects() -> Path:
-    """The folder of the dialects that pymavlink carries: common.xml and others."""
-    import pymavlink.dialects.v20 as dialects
-
-    return Path(dialects.__path__[0])
 
 
 def offer_to_pymavlink() -> None:
@@ -110,7 +104,15 @@ def _mend_dissector(output: Path) -> None:
 
 
 def _beside_its_includes(xml: Path, folder: Path) -> Path:
-    """Copy `xml` into `folder` with the dialects it may include: mavgen looks for them there."""
-    for carried in carried_dialects().glob("*.xml"):
-        shutil.copy(carried, folder)
+    """Copy `xml` into `folder` with the dialects that it includes: mavgen looks for them there.
+
+    Raises DialectError: one of them is nowhere.
+    """
+    includes = includes_of(xml)
+    if includes.missing:
+        raise DialectError(
+            f"{xml} includes {includes.missing[0]!r}, which is neither beside it nor pymavlink's"
+        )
+    for path in includes.found.values():
+        shutil.copy(path, folder)
     return Path(shutil.copy(xml, folder / xml.name))

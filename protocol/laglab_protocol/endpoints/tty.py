@@ -2,10 +2,13 @@
 
 import contextlib
 import errno
+import hashlib
 import os
 import re
 import select
+import socket
 import stat
+import sys
 import tty
 from pathlib import Path
 from time import monotonic
@@ -182,6 +185,7 @@ class Pty(_Tty):
     def __init__(self, path: str) -> None:
         link = Path(path)
         self._link: Path | None = None
+        self._claim = _claim(link)
         try:
             _make_way(link)
             self._descriptor, self._slave = os.openpty()
@@ -201,6 +205,8 @@ class Pty(_Tty):
             raise
 
     def close(self) -> None:
+        if self._claim:
+            self._claim.close()
         if self._link is None:
             return
         # A later owner may have put its own link there.
@@ -211,6 +217,24 @@ class Pty(_Tty):
         os.close(self._descriptor)
         os.close(self._slave)
         self._descriptor = NOWHERE
+
+
+def _claim(link: Path) -> socket.socket | None:
+    """Of the path, until its program ends, however it does; where the system has no names that go
+    with their program, nobody can tell."""
+    if sys.platform != "linux":
+        return None
+    name = hashlib.sha256(os.fsencode(link.absolute())).hexdigest()[:40]
+    claim = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+    try:
+        claim.bind(f"\0laglab-pty-{name}")
+    except OSError as error:
+        claim.close()
+        raise PortBusyError(
+            f"pty://{link}: a program that still runs has made it: end it first, or choose another "
+            "path"
+        ) from error
+    return claim
 
 
 def _make_way(link: Path) -> None:

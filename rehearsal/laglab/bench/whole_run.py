@@ -16,6 +16,7 @@ from laglab.scenario import Scenario, load
 from laglab_control import INITIAL_VARIANCE, StationConfig
 from laglab_fmu import RobotParameters
 from laglab_gateway import TimingReport
+from laglab_protocol import EndReason
 
 SAMPLE_TIME = RobotParameters.sample_time
 
@@ -85,4 +86,6 @@ def _run(
     ending = run_into(directory, scenario, transport, unheard, Setup(live=live))
     if ending.outcome is None:
         raise RunError(f"the loop over {transport} ended early: {ending.problem}")
+    if ending.outcome.reason is EndReason.INTERRUPTED:
+        raise KeyboardInterrupt
     return ending

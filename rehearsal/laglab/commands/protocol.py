@@ -136,8 +136,8 @@ def conform(
     waits = Waits(appear=max(Waits().appear, react), react=react)
     scope: Scope = "silence" if silent else "all"
     with status() as tell:
-        progress = _announcing(f"testing the {side} at {url}", tell)
-        report = test_conformance(url, side, key, waits, pace or "lockstep", scope, progress)
+        how = pace or "lockstep"
+        report = test_conformance(url, side, key, waits, how, scope, _announcing(tell))
     print(report.table())
     if junit:
         write_whole(junit, report.junit())
@@ -158,14 +158,14 @@ def _refuse_contradictions(side: Side, pace: Pace | None, silent: bool) -> None:
         raise typer.BadParameter("--silent is for a robot in lock-step, which alone gives up")
 
 
-def _announcing(what: str, tell: Callable[[str], None]) -> Callable[[str], None]:
-    """Passes progress on; says before what is done at all, when it is sure to begin."""
+def _announcing(tell: Callable[[str], None]) -> Callable[[str], None]:
+    """Passes progress on; the first, what is done at all, stays to be read."""
     said: list[str] = []
 
     def progress(step: str) -> None:
-        if not said:  # now that URL could be opened
-            said.append(what)
-            print(what, file=sys.stderr, flush=True)
+        if not said:
+            print(step, file=sys.stderr, flush=True)
+        said.append(step)
         tell(step)
 
     return progress

@@ -23,7 +23,7 @@ def place(scenario: Scenario, out: Path | None, force: bool = False, suffix: str
     another run's results is taken only with `force`. Raises PlaceError.
     """
     if out is None:
-        directory = _fresh(Path("runs"), re.sub(r"[^\w.-]", "-", scenario.name + suffix))
+        directory = fresh(Path("runs"), re.sub(r"[^\w.-]", "-", scenario.name + suffix))
     else:
         directory = folder_place("--out", out)
         if (directory / STUDY_FILE).exists():
@@ -54,7 +54,7 @@ def withdraw(directory: Path) -> None:
         directory.rmdir()  # if nothing of somebody else's is there
 
 
-def _fresh(parent: Path, name: str) -> Path:
+def fresh(parent: Path, name: str) -> Path:
     """``parent/name``, or with a number behind it where somebody else's results are."""
     folder_place("the folder", parent)
     number = 1

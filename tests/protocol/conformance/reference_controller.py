@@ -83,6 +83,7 @@ class Controller(Peer):
         command = Command(v, 0.0, tick, target, 1, 1, PLAN)
         twice = self.fault == "answers twice" and tick > 19
         said = [estimate, *plans, command]
+        said = [command, estimate, *plans] if self.fault == "commands first" else said
         self.send(*said, *(said if twice else []))
 
     def plan(self, tick: int) -> list[Plan]:

@@ -81,6 +81,7 @@ class Robot(Peer):
         if tick != self.told:
             self.telling, self.owed, self.told = self.owed, None, tick
         first = [sample] if self.telling is None else [self.telling, sample]
+        first = [] if self.fault == "measures nothing" else first
         said = Tick(tick, len(first) + (self.fault == "miscounts measurements"))
         self.send(*([said, *first] if self.fault == "says the tick first" else [*first, said]))
 

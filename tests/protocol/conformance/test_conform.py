@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 from xml.etree import ElementTree
 
@@ -11,7 +12,7 @@ import pytest
 
 from laglab_conformance import Mark, Pace, Report, Waits, conform, controller, freerunning, lockstep
 from laglab_conformance.ending import GIVES_UP
-from laglab_conformance.items import Item
+from laglab_conformance.items import Item, carry_out
 from laglab_protocol import make_key, open_endpoint
 
 from .faults import CONTROLLER, FREE_RUNNING, ROBOT, SIGNED
@@ -148,6 +149,35 @@ def test_a_robot_with_a_clock_of_its_own_is_told_from_one_that_breaks_the_lock_s
     assert "--pace realtime" in report.table()
 
 
+def test_a_robot_that_measures_nothing_is_told_so() -> None:
+    report = robot_with("measures nothing")
+    assert len(report.results) == len(lockstep.ITEMS)
+    assert "no measurement came" in report.table()
+
+
+def test_what_the_kit_makes_nothing_of_fails_its_item_alone() -> None:
+    def strange(_: object) -> str | None:
+        raise OverflowError("4294967296 is no tick")
+
+    items: list[Item[Any]] = [Item("ticks", "first", lambda _: None), Item("ticks", "odd", strange)]
+    peer: Any = SimpleNamespace(ended=None)
+    found = carry_out([*items, Item("ticks", "last", lambda _: None)], peer, print)
+    assert [each.mark for each in found] == [Mark.PASSED, Mark.FAILED, Mark.PASSED]
+    assert "4294967296 is no tick" in found[1].reason
+
+
+def test_a_command_before_its_estimate_is_no_answer_with_one() -> None:
+    report = controller_with("commands first")
+    assert len(report.results) == len(controller.ITEMS)
+    assert "the command tells of 1 estimates, 0 came" in report.table()
+
+
+@pytest.mark.slow
+def test_a_robot_is_not_left_in_silence_by_long_waits() -> None:
+    """It would rightly give us up."""
+    assert robot_with("", waits=QUICK._replace(react=4.0)).failed == []
+
+
 def test_nobody_there_is_said() -> None:
     with open_endpoint("udpin://127.0.0.1:0") as free:
         url = free.name.replace("udpin", "udpout")
@@ -180,7 +210,7 @@ def test_a_robot_with_one_run_is_left_in_silence_instead_of_ended(
         report = conform(url, "robot", None, QUICK._replace(react=0.5), scope="silence")
 
     assert report.failed == failed
-    assert [each.name for each in report.results] == [item.name for item in lockstep.SILENCE]
+    assert [each.name for each in report.results] == [item.name for item in lockstep.GIVING_UP]
 
 
 def test_a_false_start_that_costs_a_frame_is_optional() -> None:

@@ -112,6 +112,19 @@ def test_a_file_is_not_replaced(tmp_path: Path) -> None:
     assert path.read_text() == "precious"
 
 
+def test_nor_is_the_link_of_who_still_runs(stack: ExitStack, tmp_path: Path) -> None:
+    path = tmp_path / "robot"
+    robot = stack.enter_context(open_endpoint(f"pty://{path}"))
+    with pytest.raises(PortBusyError, match="still runs"):
+        open_endpoint(f"pty://{path}")
+    station = stack.enter_context(open_endpoint(f"serial://{path}:57600"))
+    station.send(b"hello")
+    assert robot.receive(WAIT) == b"hello"
+    station.close()
+    robot.close()
+    stack.enter_context(open_endpoint(f"pty://{path}"))
+
+
 def test_nor_is_a_link_to_one(tmp_path: Path) -> None:
     """But that of an earlier run, whose terminal is gone or another's by now."""
     (tmp_path / "notes").write_text("precious")

@@ -67,8 +67,6 @@ def run(
     way = Way("both", transport, plant or scenario.plant.called)
     with shown_live(scenario, way, live, open_) as page:
         directory = place(scenario, out, force)
-        if plant is not None:
-            say(f"the robot is at {plant}: waiting for it")
         with progress_of(scenario) as told:
             setup = replace(setup, live=page.line if page else None)
             ending = run_into(directory, scenario, transport, told, setup)

@@ -5,9 +5,11 @@ from typing import Annotated
 
 import typer
 
+from laglab.errors import PlaceError
 from laglab.extras import REHEARSING, require
 from laglab.files import folder_place
 from laglab.progress import passing
+from laglab.results.place import fresh
 from laglab.soak import Soak, repeated, require_processes, summary_tables, verdict
 from laglab.tables import terminal
 from laglab_protocol import require_terminals
@@ -25,9 +27,9 @@ def soak(
         int | None, typer.Option(min=1, metavar="N", help="Play the turn of this number alone.")
     ] = None,
     out: Annotated[
-        Path,
+        Path | None,
         typer.Option("--out", metavar="DIR", help="For the report, and the turns that failed."),
-    ] = Path("runs/soak"),
+    ] = None,
 ) -> None:
     """Try both sides in random situations, for hours.
 
@@ -43,8 +45,7 @@ def soak(
             print(line, flush=True)
 
     command = f"laglab soak --minutes {minutes:g} --seed {seed}"
-    own = out if turn is None else out / f"again-{turn}"  # the soak's report stays
-    place = folder_place("--out", own)
+    place = _place(out, turn)
     going = Soak(command if turn is None else repeated(seed, turn), seed, place, tell)
     try:
         if turn is None:
@@ -59,3 +60,14 @@ def soak(
         terminal().print(table)
     tell([verdict(report), f"report in {place}"])
     raise typer.Exit(FAILED if report.tally.failed else 0)
+
+
+def _place(out: Path | None, turn: int | None) -> Path:
+    """An empty one for a soak; beside the report for a turn of it. Raises PlaceError."""
+    if turn is not None:
+        return folder_place("--out", (out or Path("runs", "soak")) / f"again-{turn}")
+    if out is None:
+        return fresh(Path("runs"), "soak")
+    if theirs := [*out.glob("turn-*"), *out.glob("soak.*")]:
+        raise PlaceError(f"--out {out}: {theirs[0].name} is there already: take another folder")
+    return folder_place("--out", out)

@@ -70,7 +70,7 @@ def sweep(
         work_off(chosen, folder, _workers(scheduler, workers), work, again=force)
     except KeyboardInterrupt:
         kept = sum(len(cell.seeds) for cell in chosen.cells() if folder.has(cell))
-        say(f"laglab: {kept} of {chosen.runs} runs are kept: the same command goes on from there")
+        say(f"{kept} of {chosen.runs} runs are kept: the same command goes on from there")
         raise
     said = summary(chosen, folder, work)
     terminal().print(said, highlight=False)

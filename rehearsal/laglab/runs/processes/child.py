@@ -149,7 +149,9 @@ def main(target: str, again: bool) -> None:
 
 
 def _leave(*_: object) -> NoReturn:
-    """At once: there is nothing to end in order yet, or any more."""
+    """At once: there is nothing to end in order yet, or any more. Nor is there anything to be
+    interrupted a second time, as when a parent that is gone is found gone twice."""
+    on_interrupt(lambda *_: None)
     shutil.rmtree(sys.argv[3], ignore_errors=True)
     os._exit(INTERRUPTED)
 

@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+import signal
 import socket
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
@@ -33,7 +34,8 @@ def cluster(address: str, workers: int = 0) -> Iterator[Executor]:
     with ExitStack() as stack:
         if address == OURS:
             folder = stack.enter_context(TemporaryDirectory(prefix="laglab-dask-"))
-            address = stack.enter_context(_own(workers, folder)).scheduler_address
+            with _spared():
+                address = stack.enter_context(_own(workers, folder)).scheduler_address
         else:
             _look_for(address)
         try:
@@ -72,6 +74,19 @@ def _nobody(address: str) -> RefusedError:
         f"--scheduler {address}: no dask scheduler answers there: start one with `dask scheduler`, "
         "or say --scheduler local"
     )
+
+
+@contextmanager
+def _spared() -> Iterator[None]:
+    """What is started within hears nothing of a Ctrl-C in the terminal, or of its end: we do."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _own(workers: int, folder: str) -> Any:
