@@ -1,6 +1,7 @@
 """Studies on a dask.distributed cluster, any part of which may be killed at any moment."""
 
 import json
+import os
 import random
 import signal
 import subprocess
@@ -56,9 +57,9 @@ class Cluster:
         here = ("--local-directory", str(self._folder))
         return self._program(*program, *here, "--no-dashboard", "--no-nanny", "--nthreads", "1")
 
-    def sweep(self, address: str) -> "subprocess.Popen[str]":
-        """The client."""
-        return self._start(sys.executable, *SWEEP, address)
+    def sweep(self, address: str, *by: str) -> "subprocess.Popen[str]":
+        """The client, started by a program if told one."""
+        return self._start(*by, sys.executable, *SWEEP, address)
 
     def _program(self, *arguments: str) -> "subprocess.Popen[str]":
         """What it logs goes nowhere, so that it never waits for a reader."""
@@ -141,11 +142,14 @@ def drop_half_written(out: Path) -> None:
 def test_a_cluster_of_our_own_ends_with_us(
     cluster: Cluster, tmp_path: Path, expected: Contents
 ) -> None:
-    client = cluster.sweep("local")
+    """Ctrl-C in a terminal goes to all that it started."""
+    client = cluster.sweep("local", "setsid")
     wait_for_cells(tmp_path / "out", 2)
-    client.send_signal(signal.SIGINT)
+    os.killpg(client.pid, signal.SIGINT)
     _, errors = said(client, 130)
-    assert errors == "laglab: interrupted\n"
+    kept, last = errors.splitlines()
+    assert "runs are kept" in kept
+    assert last == "laglab: interrupted"
     output, errors = said(cluster.sweep("local"), 0)
     assert not errors
     assert f"{CELLS * SEEDS} runs" in output

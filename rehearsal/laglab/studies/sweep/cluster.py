@@ -6,6 +6,7 @@ import signal
 import socket
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
+from multiprocessing import resource_tracker
 from tempfile import TemporaryDirectory
 from typing import Any
 from urllib.parse import urlsplit
@@ -82,8 +83,11 @@ def _spared() -> Iterator[None]:
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
+    ours = {signal.SIGINT, signal.SIGHUP}
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ours)
     try:
+        resource_tracker.ensure_running()  # else a worker makes it, and SIGINT passes
+        signal.pthread_sigmask(signal.SIG_BLOCK, ours)
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
