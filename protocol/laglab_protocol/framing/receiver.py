@@ -85,11 +85,12 @@ class Receiver:
         longer than a frame takes; an unfinished frame is given up, and what its start byte hid is
         found. Otherwise at most one unfinished frame is kept: under 300 bytes.
         """
-        buffer = self._rest + data if self._rest else data
+        buffer = data
+        if self._rest:
+            buffer, self._rest = self._rest + data, b""
         aligned = self._aligned
         within = 0 if aligned else self._within
         astray = not aligned
-        self._rest = b""
         verifier, expected = self._verifier, self._expected
         signed_too = verifier is not None
         frames: list[Frame] = []
