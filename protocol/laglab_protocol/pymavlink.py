@@ -22,15 +22,15 @@ def main(arguments: list[str]) -> None:
     program, *rest = arguments
     sys.argv = [Path(program).name, "--dialect=laglab", *rest]
     offer_to_pymavlink()
-    tool = f"pymavlink.tools.{program}"
     if Path(program).suffix == ".py":
-        if (found := shutil.which(program) or program) and not Path(found).is_file():
+        path = program if Path(program).is_file() else shutil.which(program)
+        if path is None:
             sys.exit(f"{program}: no such program here, nor on the PATH")
-        runpy.run_path(found, run_name="__main__")
-    elif find_spec(tool) is None:
-        sys.exit(f"{program}: no tool of pymavlink's, nor a path that ends in .py")
-    else:
+        runpy.run_path(path, run_name="__main__")
+    elif program.isidentifier() and find_spec(tool := f"pymavlink.tools.{program}"):
         runpy.run_module(tool, run_name="__main__")
+    else:
+        sys.exit(f"{program}: no tool of pymavlink's, nor a path that ends in .py")
 
 
 if __name__ == "__main__":

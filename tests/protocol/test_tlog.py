@@ -74,7 +74,7 @@ def test_mavlogdump_reads_it(log: Path) -> None:
     assert "LAGLAB_COMMAND {v : 0.25, omega : -1.5, tick : 7" in done.stdout
 
 
-@pytest.mark.parametrize("program", ["nothing", "nothing.py"])
+@pytest.mark.parametrize("program", ["nothing", "nothing.py", "nothing.more"])
 def test_a_program_that_there_is_not_is_one_line(program: str) -> None:
     command = [sys.executable, "-m", "laglab_protocol.pymavlink", program]
     told = subprocess.run(command, capture_output=True, text=True, check=False)

@@ -10,12 +10,14 @@ import numpy as np
 import pytest
 
 import laglab
-from laglab.bench import Report
+from laglab.bench import Report, whole_run
 from laglab.bench.by_hand import Link, seconds_per_echo, tick_sizes
 from laglab.bench.by_hand import loop as by_hand
 from laglab.bench.loop import LINKS
 from laglab.bench.whole_run import loop_scenario
-from laglab_gateway import read_trace
+from laglab.runs.ending import Ending
+from laglab_gateway import Outcome, read_trace
+from laglab_protocol import EndReason
 
 
 @pytest.mark.parametrize("link", LINKS)
@@ -63,3 +65,17 @@ def test_the_benchmark_says_what_each_way_costs(
     assert figures["real time, late by: p50", "ms"] > 0
     assert "udp, popf: laglab" in result.stdout
     assert max(map(len, result.stdout.splitlines())) <= 80
+
+
+@pytest.mark.parametrize("link", LINKS)
+def test_a_run_that_was_interrupted_is_no_figure(
+    link: Link, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It ends in order, as Ctrl-C has any run end; the bench is to end with it."""
+
+    def interrupted(*_: object) -> Ending:
+        return Ending(Outcome(EndReason.INTERRUPTED, 7), loop_seconds=0.1)
+
+    monkeypatch.setattr(whole_run, "run_into", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        whole_run.seconds_per_tick(link, loop_scenario("raw", 100), tmp_path)

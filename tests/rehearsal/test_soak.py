@@ -23,7 +23,7 @@ from laglab.soak import (
     play,
 )
 from laglab.soak.draw import SIGNALS
-from laglab.soak.files import faults_of
+from laglab.soak.files import PAGE, faults_of
 from laglab.soak.system import marked
 from laglab_gateway import ROWS, TRACE_FILE
 
@@ -163,9 +163,13 @@ def test_files_that_are_torn_or_out_of_order_are_told(tmp_path: Path) -> None:
     assert told == ["the times of its trace are not in order"]
     for name in ("link.csv", "arrivals.csv", "claims.csv"):
         whole = (tmp_path / "run" / name).read_bytes()
-        (tmp_path / "run" / name).write_bytes(whole[:-3])
-        assert f"{name}: its last line is torn" in faults_of(tmp_path / "run", killed=True)
+        for cut in (b"", whole[:-3]):
+            (tmp_path / "run" / name).write_bytes(cut)
+            assert f"{name}: its last line is torn" in faults_of(tmp_path / "run", killed=True)
         (tmp_path / "run" / name).write_bytes(whole)
+    (tmp_path / "run" / TRACE_FILE).write_text(trace[:PAGE])
+    assert list(faults_of(tmp_path / "run", killed=True)) == []
+    assert f"{TRACE_FILE}: its last line is torn" in faults_of(tmp_path / "run", killed=False)
 
 
 def test_a_descriptor_that_is_not_a_files_is_told() -> None:

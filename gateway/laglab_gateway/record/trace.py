@@ -65,9 +65,8 @@ def trace_pieces(path: Path, most: int = 5_000) -> Iterator[Trace]:
                 raise TraceError(f"{path} is not a trace: expected the columns {HEADER.strip()}")
             empty = True
             for piece in in_pieces(rows, len(TraceRow._fields), most):
-                if columns := _columns(piece):
-                    empty = False
-                    yield columns
+                empty = False
+                yield _columns(piece)
     except OSError as error:
         raise TraceError(f"{path} cannot be read: {error.strerror}") from error
     except (ValueError, csv.Error) as error:
@@ -76,10 +75,9 @@ def trace_pieces(path: Path, most: int = 5_000) -> Iterator[Trace]:
         raise TraceError(f"{path} holds no row: the run ended before its first tick was over")
 
 
-def _columns(lines: list[list[str]]) -> Trace:
-    cells = [[float(cell or "nan") for cell in line] for line in lines]
-    table = np.array(cells, dtype=np.float64).T
-    return dict(zip(TraceRow._fields, table, strict=True)) if cells else {}
+def _columns(rows: list[list[str]]) -> Trace:
+    table = np.array([[float(cell or "nan") for cell in row] for row in rows], dtype=np.float64)
+    return dict(zip(TraceRow._fields, table.T, strict=True))
 
 
 def trace_of(rows: Sequence[TraceRow]) -> Trace:

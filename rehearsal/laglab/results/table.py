@@ -93,11 +93,10 @@ def _direction(audit: DirectionReport) -> str:
 
 def _lost(by_cause: Mapping[str, int]) -> str:
     """Of frames: a command may have several."""
-    causes = ", ".join(f"{count} {cause}" for cause, count in by_cause.items())
-    if len(by_cause) == 1:
-        (causes,) = by_cause
-    told = "" if causes == FateKind.LOST else f": {causes}"
-    return f"{sum(by_cause.values())} frames lost{told}"
+    several = [f"{count} {cause}" for cause, count in by_cause.items()]
+    causes = several if len(several) > 1 else [each for each in by_cause if each != FateKind.LOST]
+    told = f"{sum(by_cause.values())} frames lost"
+    return f"{told}: {', '.join(causes)}" if causes else told
 
 
 def _timing_row(timing: TimingReport) -> dict[str, str]:

@@ -20,10 +20,16 @@ TLOG_STAMP = 8
 
 def faults_of(folder: Path, killed: bool) -> Iterator[str]:
     """What is not as it should be. Who was killed may have no results, but no torn files."""
-    cut = {path.name for path in folder.glob("*") if killed and path.stat().st_size % PAGE == 0}
-    yield from (fault for name, fault in _torn(folder) if name not in cut)
+    for name, fault in _torn(folder):
+        if not (killed and _ends_with_a_page(folder / name)):
+            yield fault
     if not killed:
         yield from _unreadable(folder)
+
+
+def _ends_with_a_page(path: Path) -> bool:
+    size = path.stat().st_size if path.exists() else 0
+    return size > 0 and size % PAGE == 0
 
 
 def _torn(folder: Path) -> Iterator[tuple[str, str]]:

@@ -1,5 +1,6 @@
 """The kit passes what keeps the rules, and finds each fault: its own item, and no other."""
 
+import re
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
@@ -176,6 +177,13 @@ def test_a_command_before_its_estimate_is_no_answer_with_one() -> None:
 def test_a_robot_is_not_left_in_silence_by_long_waits() -> None:
     """It would rightly give us up."""
     assert robot_with("", waits=QUICK._replace(react=4.0)).failed == []
+
+
+def test_the_port_that_the_system_chose_is_told() -> None:
+    steps: list[str] = []
+    waits = Waits(0.2, 0.02, 0.02)
+    conform("udpin://127.0.0.1:0", "controller", None, waits, progress=steps.append)
+    assert re.fullmatch(r"testing the controller at udpin://127\.0\.0\.1:[1-9]\d+", steps[0])
 
 
 def test_nobody_there_is_said() -> None:
