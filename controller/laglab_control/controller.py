@@ -163,7 +163,7 @@ class Controller:
         all_planned = (drive, *plan) if self.config.plan else ()
         flight, applied = send(self._robot(estimate), flight, as_input(drive), all_planned)
         estimate = self._estimator.predict(estimate, self._applied(applied, drive))
-        return Control(estimate, flight, drive, plan=plan)
+        return Control(estimate, flight, drive, None, None, plan)
 
     def unanswered(self, control: Control) -> Control:
         """At a tick that never came here: the robot goes on in its plan, or holds what it has."""
@@ -173,7 +173,7 @@ class Controller:
     def expect(self, control: Control, s: int) -> Control:
         """The same, prepared for a measurement sampled at tick s, which is likely to come."""
         estimate, flight, drive, _, _, plan = control
-        return Control(self._estimator.expect(estimate, s), flight, drive, plan=plan)
+        return Control(self._estimator.expect(estimate, s), flight, drive, None, None, plan)
 
     def answer(
         self,
@@ -187,13 +187,14 @@ class Controller:
         The robot is to stand still where no estimate is there to drive it by, or the estimate has
         diverged. Raises StampError for a measurement from before tick 0 or from the future.
         """
-        estimate, flight, last, pose, P, _ = self.correct(control, measurements, echoes, recalled)
+        config, last = self.config, control.drive
+        estimate, flight, pose, P = self._corrected(control, measurements, echoes, recalled)
         if pose is None or self.diverged(pose):
             return Control(estimate, flight, STAND_STILL, pose, P)
-        tick = self.config.first_tick + flight.tick + flight.command_delay
+        tick = config.first_tick + flight.tick + flight.command_delay
         there = self._there(estimate, flight, last, pose)
         drive = self.command(there, tick, last, P)
-        if not self.config.plan:
+        if not config.plan:
             return Control(estimate, flight, drive, pose, P)
         plan = self._planned(there, tick, drive, P, self._robot(estimate))
         return Control(estimate, flight, drive, pose, P, plan)
@@ -219,7 +220,17 @@ class Controller:
         recalled: Sequence[Applied] = (),
     ) -> Control:
         """The tick's correction alone; `drive` is still the last command. Raises StampError."""
-        estimate, flight, drive, *_ = control
+        estimate, flight, pose, P = self._corrected(control, measurements, echoes, recalled)
+        return Control(estimate, flight, control.drive, pose, P)
+
+    def _corrected(
+        self,
+        control: Control,
+        measurements: Sequence[Measured],
+        echoes: Sequence[Echo],
+        recalled: Sequence[Applied],
+    ) -> tuple[State, Flight, Vector | None, Matrix | None]:
+        estimate, flight = control.estimate, control.flight
         flight, inputs = hear(self._robot(estimate), flight, echoes, recalled)
         if self._guard and isinstance(estimate, Watched):
             settled = flight.told.settled
@@ -230,7 +241,7 @@ class Controller:
         if pose is not None and P is not None:
             unknown = doubt(flight, self.config.model, pose)
             P = P if unknown is None else P + unknown
-        return Control(estimate, flight, drive, pose, P)
+        return estimate, flight, pose, P
 
     def command(self, there: Way[float], tick: int, last: Demand, P: Matrix | None) -> Demand:
         """What is sent after `last` for a robot that will be `there` [m, m, rad] at its `tick`.
@@ -238,7 +249,7 @@ class Controller:
         `P` (3, 3) is the covariance that is claimed for the present estimate.
         """
         config, sample_time = self.config, self.config.model.sample_time
-        asked = Demand(*config.law.drive(there, tick * sample_time, last.memory))
+        asked = config.law.drive(there, tick * sample_time, last.memory)
         return config.limits.limited(asked, P, last, sample_time)
 
     def diverged(self, x: Vector) -> bool:
@@ -289,9 +300,10 @@ class Controller:
         """Where the robot will be when the command that is now made comes into force, as the
         estimator says, or by (29)."""
         ahead = self._estimator.ahead(estimate, flight.in_flight)
-        return self._at_arrival(x, flight, drive) if ahead is None else Way(*ahead.tolist())
+        if ahead is not None:
+            return Way(*ahead.tolist())
+        return self._at_arrival(Way(*x.tolist()), flight, drive)
 
-    def _at_arrival(self, x: Vector, flight: Flight, drive: Demand) -> Way[float]:
+    def _at_arrival(self, pose: Way[float], flight: Flight, drive: Demand) -> Way[float]:
         """(29): where the robot will be when the command that is now made comes into force."""
-        pose = Way(*x.tolist())
         return joined(pose, flight.ahead) if self.kind.predicts else pose

@@ -8,7 +8,6 @@ applies then is in all of them.
 """
 
 import math
-from collections.abc import Iterator
 from typing import Generic, NamedTuple
 
 import numpy as np
@@ -38,7 +37,7 @@ class Missed(NamedTuple, Generic[F]):
 
 def doubt(flight: Flight, robot: RobotModel, x: Vector) -> Matrix | None:
     """To be added to the covariance (3, 3) of the pose x (3,); None: all is as it usually is."""
-    missed = list(_missed(flight, robot.sample_time))
+    missed = _missed(flight, robot.sample_time)
     if not missed:
         return None
     cosine, sine = direction(float(x[2]))
@@ -50,18 +49,19 @@ def doubt(flight: Flight, robot: RobotModel, x: Vector) -> Matrix | None:
     return total
 
 
-def _missed(flight: Flight, Ts: float) -> Iterator[Missed[float]]:
+def _missed(flight: Flight, Ts: float) -> list[Missed[float]]:
     told, planned = flight.told, flight.plans.horizon if flight.plans else 0
     if told.usual is None:
-        return
+        return []
     believed = flight.tick - 1 - told.known
+    missed: list[Missed[float]] = []
     if believed > told.usual + PATIENCE + planned:
-        yield _held(flight, Ts, believed)
-        yield _stopped(flight, Ts)
+        missed += (_held(flight, Ts, believed), _stopped(flight, Ts))
     elif told.spread and not planned:
-        yield _shifted(flight, Ts, believed, told.spread)
+        missed.append(_shifted(flight, Ts, believed, told.spread))
     if len(told.missing) > planned:
-        yield _untold(flight, Ts)
+        missed.append(_untold(flight, Ts))
+    return missed
 
 
 def _held(flight: Flight, Ts: float, believed: int) -> Missed[float]:

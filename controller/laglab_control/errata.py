@@ -90,12 +90,11 @@ class PrintedController(Controller):
         """v_c is the speed last commanded, which comes into force n ticks later."""
         return np.append(u, drive.v)
 
-    def _at_arrival(self, x: Vector, flight: Flight, drive: Demand) -> Way[float]:
+    def _at_arrival(self, pose: Way[float], flight: Flight, drive: Demand) -> Way[float]:
         """(29), or as printed: u_{k+n-1} is not sent yet, so the last command there is, n times."""
         if Erratum.EXTRAPOLATION not in self.errata:
-            return super()._at_arrival(x, flight, drive)
+            return super()._at_arrival(pose, flight, drive)
         step = self.config.model.way(as_input(drive))
-        pose = Way(*x.tolist())
         for _ in range(self.config.command_delay):
             pose = joined(pose, step)
         return pose

@@ -66,9 +66,11 @@ class Told(NamedTuple):
     ) -> "tuple[Told, list[Applied]]":
         """With what came at `tick`; and the inputs that are known by it."""
         told = self
-        inputs = [Applied(echo.tick, echo.u) for echo in echoes] + list(recalled)
+        inputs: list[Applied] = []
         for echo in echoes:
             told = _heard(told, echo, tick)
+            inputs.append(Applied(echo.tick, echo.u))
+        inputs += recalled
         return _found(told, inputs, tick) if told.missing else told, inputs
 
     @property
@@ -135,7 +137,7 @@ def send(
     if plans:
         plans, u = plans.send(plan)
     sent = append(sent, _sent_after(sent, u), MEMORY)
-    applied, in_flight = in_flight.push(u, robot.way(u)).pop()
+    applied, in_flight = in_flight.slide(u, robot.way(u))
     ahead = in_flight.product
     return Flight(tick + 1, sent, n, told, in_flight, ahead, plans), applied
 

@@ -91,14 +91,15 @@ class DelayedEkf(Estimator[DelayedState[W]]):
         """Roll back to the oldest news, replay from there, then go on to the newest measurement."""
         measurements = by_sampling(measurements, state.tick)
         filtered, window = state.filtered, state.window
-        oldest = filtered.newest.tick - min(filtered.length - 1, self.memory)
+        newest = filtered.newest.tick
+        oldest = newest - min(filtered.length - 1, self.memory)
         known = {j + 1: u for j, u in inputs if oldest <= j < state.tick} if inputs else {}
-        if known or (measurements and measurements[0].tick <= filtered.newest.tick):
-            late = {s: z for s, z in reversed(measurements) if oldest <= s <= filtered.newest.tick}
+        if (known and min(known) <= newest) or (measurements and measurements[0].tick <= newest):
+            late = {s: z for s, z in reversed(measurements) if oldest <= s <= newest}
             filtered = self._revise(filtered, late, known)
         for s, z in measurements:
             filtered, window = self._advance(filtered, window, s, z, known)
-        if known:
+        if known and max(known) > filtered.newest.tick:
             window = self._put_right(filtered.newest.tick, window, known)
         innovation = _innovation(filtered, measurements[-1].tick) if measurements else None
         return DelayedState(state.tick, filtered, window, state.windows, innovation)
@@ -126,8 +127,6 @@ class DelayedEkf(Estimator[DelayedState[W]]):
     def _put_right(self, newest: int, window: Window[W], known: Mapping[int, Vector]) -> Window[W]:
         """The window from tick `newest` on with those of its inputs that were wrong put right;
         `known` by the tick that each led to."""
-        if all(tick <= newest for tick in known):
-            return window
         right = window.emptied()
         for tick, u in enumerate(window, start=newest + 1):
             told = known.get(tick, u)

@@ -83,13 +83,31 @@ def correct(model: Model, prior: Belief, z: Vector) -> Corrected:
     """(8), with P+ in Joseph's form, which stays positive definite under rounding."""
     x, P = prior
     H, R = model.H(x), model.measurement_noise(x)
-    PHt = P.dot(H.T)
-    S = H.dot(PHt) + R
+    PHt, HPHt = measured(P, H)
+    S = HPHt + R
     K = gain(PHt, S)
-    B = identity(len(x)) - K.dot(H)
+    B = identity(len(x)) - times(K, H)
     v = model.innovation(z, model.h(x))
     P = _sound(symmetric(B.dot(P).dot(B.T) + K.dot(R).dot(K.T)), H)
     return Corrected(Belief(x + K.dot(v), P), Innovation(v, S))
+
+
+def measured(P: Matrix, H: Matrix) -> tuple[Matrix, Matrix]:
+    """P H^T and H P H^T."""
+    if _is_all(H):
+        return P, P
+    PHt = P.dot(H.T)
+    return PHt, H.dot(PHt)
+
+
+def times(A: Matrix, H: Matrix) -> Matrix:
+    """A H."""
+    return A if _is_all(H) else A.dot(H)
+
+
+def _is_all(H: Matrix) -> bool:
+    """Whether the whole state is measured, as a pose is (33): then nothing need be multiplied."""
+    return H is identity(len(H))
 
 
 def _sound(P: Matrix, H: Matrix) -> Matrix:

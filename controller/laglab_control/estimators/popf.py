@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from laglab_control.estimators.interface import Applied, Estimator, Measured, by_sampling
-from laglab_control.estimators.kalman import Belief, Innovation, gain
+from laglab_control.estimators.kalman import Belief, Innovation, gain, measured, times
 from laglab_control.model import Matrix, Model, Vector, identity, symmetric
 from laglab_control.past.history import History
 from laglab_control.past.log import logged
@@ -111,7 +111,9 @@ class Popf(Estimator[PopfState]):
         """With the gain for s, and the covariance after it: (21) to (24)."""
         if not (0 <= s <= state.tick and self._useful(state, s)):
             return state
-        return state._replace(expected=self._correction(state, s))
+        tick, x, P, prior, used, innovation, _ = state
+        expected = self._correction(state, s)
+        return PopfState(tick, x, P, prior, used, innovation, expected)
 
     def _useful(self, state: PopfState, s: int) -> bool:
         lateness = state.tick - s
@@ -133,14 +135,14 @@ class Popf(Estimator[PopfState]):
         prior_s, M = (prior, left) if s == tick else _prior_and_M(past, s, left)
         (x_s, P_s), model = prior_s, self.model
         H = model.H(x_s)
-        PHt = P_s.dot(H.T)
+        PHt, HPHt = measured(P_s, H)
         cross = M.dot(PHt)
-        S = H.dot(PHt) + model.measurement_noise(x_s)
+        S = HPHt + model.measurement_noise(x_s)
         K = gain(cross, S)  # (24)
         H_k = model.H(prior.x)
         seen = M.dot(P_s).dot(H_k.T) if self.covariance_at_k else cross
         P = symmetric(P - K.dot(seen.T))  # (23)
-        left = left - K.dot(H_k).dot(left)
+        left = left - times(K, H_k).dot(left)
         with_this = Used(left, past, used | 1 << tick - s, max(lateness, tick - s))
         return Correction(s, prior_s, S, K, P, with_this)
 

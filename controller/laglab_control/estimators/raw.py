@@ -30,7 +30,8 @@ class Raw(Estimator[RawState]):
 
     def predict(self, state: RawState, u: Vector) -> RawState:
         """The same one tick later."""
-        return state._replace(tick=state.tick + 1)
+        tick, x, newest = state
+        return RawState(tick + 1, x, newest)
 
     def correct(
         self, state: RawState, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
@@ -38,7 +39,7 @@ class Raw(Estimator[RawState]):
         """The newest measurement; those older than one already seen are of no use to it."""
         for tick, z in by_sampling(measurements, state.tick):
             if tick > state.newest:
-                state = state._replace(x=z, newest=tick)
+                state = RawState(state.tick, z, tick)
         return state
 
     @property

@@ -98,6 +98,15 @@ class Watched(NamedTuple):
         P[:3, :3] += np.outer(lag.mean, lag.mean)
         return P
 
+    def judged(
+        self, state: State, evidence: Evidence, lag: Lag | None, seen: Seen, gated: int
+    ) -> "Watched":
+        """With what a measurement makes of these."""
+        _, origin, learning, aside, found, _, _, inputs, _, _, alarm = self
+        return Watched(
+            state, origin, learning, aside, found, evidence, lag, inputs, seen, gated, alarm
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class Guard(Estimator[Watched]):
@@ -155,7 +164,9 @@ class Guard(Estimator[Watched]):
     def expect(self, state: Watched, s: int) -> Watched:
         """The estimator's own."""
         inner = self._active(state).expect(state.state, s - state.origin)
-        return state if inner is state.state else state._replace(state=inner)
+        if inner is state.state:
+            return state
+        return state.judged(inner, state.evidence, state.lag, state.seen, state.gated)
 
     def ahead(self, state: Watched, inputs: Iterable[Vector]) -> Vector | None:
         """The estimator's own."""
@@ -215,7 +226,8 @@ class Guard(Estimator[Watched]):
         tried = active.correct(state.state, [Measured(s - state.origin, z)])
         innovation = active.innovation(tried)
         if innovation is None or not (settled is None or s <= settled + 1):
-            return self._used(state._replace(state=tried, seen=state.seen.and_of(s)))
+            seen = state.seen.and_of(s)
+            return self._used(state.judged(tried, state.evidence, state.lag, seen, state.gated))
         return self._judged(state, measured, tried, innovation)
 
     def _judged(
@@ -228,12 +240,12 @@ class Guard(Estimator[Watched]):
             evidence = weighed(evidence, v, nis)
             lag = lagging(evidence, weights, lag)
             found = contradiction(evidence, lag)
-        if nis <= WILD:
-            state = state._replace(state=tried, seen=seen, evidence=evidence, lag=lag)
-            return self._begun_again(state, measured, found) if found else self._used(state)
-        gated = state.gated + 1
-        state = state._replace(seen=seen, evidence=evidence, lag=lag, gated=gated)
-        return self._begun_again(state, measured, found) if found else state
+        is_wild = not nis <= WILD  # nor is what is not finite used
+        taken, gated = (state.state, state.gated + 1) if is_wild else (tried, state.gated)
+        state = state.judged(taken, evidence, lag, seen, gated)
+        if found:
+            return self._begun_again(state, measured, found)
+        return state if is_wild else self._used(state)
 
     def _used(self, state: Watched) -> Watched:
         """One more of those by which the pose is found, if it is being found."""

@@ -34,10 +34,10 @@ class PolarLaw:
         x_goal, y_goal, theta_goal = self.goal
         rho = math.hypot(x_goal - x, y_goal - y)
         if self._holds(rho, at_goal=bool(memory)):
-            return Demand(0.0, self.lambda_ / 2 * wrap(theta_goal - theta), memory=True)
+            return Demand(0.0, self.lambda_ / 2 * wrap(theta_goal - theta), True)
         psi = math.atan2(y_goal - y, x_goal - x)
         v, omega = self._polar(rho, alpha=wrap(psi - theta), phi=wrap(psi - theta_goal))
-        return Demand(v, omega, memory=False)
+        return Demand(v, omega, False)
 
     def _holds(self, rho: float, at_goal: bool) -> bool:
         """Entered below the tolerance, left only above twice the tolerance."""

@@ -27,27 +27,34 @@ class SpeedLimits:
     def __post_init__(self) -> None:
         check(self)
 
-    def limited(self, asked: Demand, P: Matrix | None, last: Demand, sample_time: float) -> Demand:
+    def limited(
+        self,
+        asked: tuple[float, float, object],
+        P: Matrix | None,
+        last: Demand,
+        sample_time: float,
+    ) -> Demand:
         """What is sent after `last` instead of what was `asked`.
 
         `P` (3, 3) is the covariance that is claimed for the pose; None: nothing is.
         """
-        v, omega = _clamp(asked.v, self.v_max), _clamp(asked.omega, self.omega_max)
-        if P is not None and (share := self._share(P)) < 1:
+        v, omega, memory = asked
+        v, omega = _clamp(v, self.v_max), _clamp(omega, self.omega_max)
+        if self.caution is not None and P is not None:
+            share = _share(P, self.caution)
             v, omega = share * v, share * omega
         if self.accel_max is not None:
             v = last.v + _clamp(v - last.v, self.accel_max * sample_time)
         if self.alpha_max is not None:
             omega = last.omega + _clamp(omega - last.omega, self.alpha_max * sample_time)
-        return Demand(v, omega, asked.memory)
+        return Demand(v, omega, memory)
 
-    def _share(self, P: Matrix) -> float:
-        """The share of the speeds that the claimed covariance makes advisable."""
-        caution, variance = self.caution, max(float(P[0, 0]), float(P[1, 1]))
-        if caution is None or variance <= caution * caution:
-            return 1.0
-        return caution / math.sqrt(variance)
+
+def _share(P: Matrix, caution: float) -> float:
+    """The share of the speeds that the claimed covariance makes advisable."""
+    variance = max(float(P[0, 0]), float(P[1, 1]))
+    return 1.0 if variance <= caution * caution else caution / math.sqrt(variance)
 
 
 def _clamp(value: float, limit: float | None) -> float:
-    return value if limit is None else min(max(value, -limit), limit)
+    return value if limit is None or not abs(value) > limit else math.copysign(limit, value)

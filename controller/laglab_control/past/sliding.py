@@ -51,19 +51,15 @@ class SlidingProduct(Generic[Item, Product]):
 
     def push(self, item: Item, factor: Product) -> Self:
         """With a newest item."""
-        back = self._back
-        product = factor if back is None else self._compose(back.product, factor)
-        cell = Cell(item, factor, product, back)
-        return type(self)(self._compose, self.identity, self._front, cell)
+        return type(self)(self._compose, self.identity, self._front, self._longer(item, factor))
 
     def pop(self) -> tuple[Item, Self]:
         """The oldest item, and the queue without it. Raises IndexError when the queue is empty."""
-        front, back = self._front, self._back
-        if front is None:
-            front, back = self._turned(), None
-        if front is None:
-            raise IndexError("the window is empty")
-        return front.item, type(self)(self._compose, self.identity, front.below, back)
+        return self._without_oldest(self._back)
+
+    def slide(self, item: Item, factor: Product) -> tuple[Item, Self]:
+        """The item that is then the oldest, and the queue without it, with a newest one."""
+        return self._without_oldest(self._longer(item, factor))
 
     def emptied(self) -> Self:
         """A new one for the same kind of products."""
@@ -76,9 +72,22 @@ class SlidingProduct(Generic[Item, Product]):
         for cell in reversed(list(_walk(self._back))):
             yield cell.item
 
-    def _turned(self) -> Cell[Item, Product] | None:
+    def _longer(self, item: Item, factor: Product) -> Cell[Item, Product]:
+        back = self._back
+        product = factor if back is None else self._compose(back.product, factor)
+        return Cell(item, factor, product, back)
+
+    def _without_oldest(self, back: Cell[Item, Product] | None) -> tuple[Item, Self]:
+        front = self._front
+        if front is None:
+            front, back = self._turned(back), None
+        if front is None:
+            raise IndexError("the window is empty")
+        return front.item, type(self)(self._compose, self.identity, front.below, back)
+
+    def _turned(self, back: Cell[Item, Product] | None) -> Cell[Item, Product] | None:
         front: Cell[Item, Product] | None = None
-        for cell in _walk(self._back):
+        for cell in _walk(back):
             product = cell.factor
             if front is not None:
                 product = self._compose(cell.factor, front.product)
