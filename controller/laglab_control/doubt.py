@@ -13,7 +13,7 @@ from typing import Generic, NamedTuple
 import numpy as np
 
 from laglab_control.angle import direction
-from laglab_control.flight import Flight, believed_at, believed_sum
+from laglab_control.flight import Flight, believed_sum, sent_for
 from laglab_control.model import Matrix, Vector
 from laglab_control.motion import F
 from laglab_control.robot import RobotModel
@@ -57,7 +57,7 @@ def _missed(flight: Flight, Ts: float) -> list[Missed[float]]:
     missed: list[Missed[float]] = []
     if believed > told.usual + PATIENCE + planned:
         missed += (_held(flight, Ts, believed), _stopped(flight, Ts))
-    elif told.spread and not planned:
+    elif told.spread and not planned and not flight.stands:
         missed.append(_shifted(flight, Ts, believed, told.spread))
     if len(told.missing) > planned:
         missed.append(_untold(flight, Ts))
@@ -85,7 +85,7 @@ def _shifted(flight: Flight, Ts: float, believed: int, spread: float) -> Missed[
     if believed <= 0:
         return Missed(0.0, 0.0, 0.0)
     v, omega = flight.told.in_force.tolist()
-    v_now, omega_now = believed_at(flight, flight.tick - 1).tolist()
+    v_now, omega_now = sent_for(flight, flight.tick - 1).tolist()
     late = Ts * spread
     return Missed(late * (v_now - v), late * (omega_now - omega), Ts * believed * abs(v_now))
 
@@ -94,7 +94,7 @@ def _untold(flight: Flight, Ts: float) -> Missed[float]:
     """As if the last input known had been in force at all ticks of which nothing was told."""
     missing = flight.told.missing
     v, omega = flight.told.before.tolist()
-    inputs = [believed_at(flight, tick).tolist() for tick in missing]
+    inputs = [sent_for(flight, tick).tolist() for tick in missing]
     distance = Ts * math.fsum(each[0] - v for each in inputs)
     turn = Ts * math.fsum(each[1] - omega for each in inputs)
     return Missed(distance, turn, Ts * len(missing) * abs(v))

@@ -19,8 +19,14 @@ RECENT = 25
 """So many echoes tell delays of which n is the median."""
 GIVEN_UP = 256
 """Ticks after which an input that was not told is taken to have been as believed."""
+STOOD = 25
+"""A robot that says for more ticks than this that it stands still, though it was to drive, does not
+obey: its failsafe goes on being at rest for less when a link comes back."""
 FEW = 20
 """So many ticks whose input may have been another one make no difference that shows."""
+
+
+AT_REST = STAND.tolist()
 
 
 class Echo(NamedTuple):
@@ -54,6 +60,8 @@ class Told(NamedTuple):
     """So many inputs were only believed when the last echo came; None before one."""
     spread: float = 0.0
     """The standard deviation of the `recent` delays [ticks]."""
+    stood: int = 0
+    """For so many ticks up to `known` the robot has told again and again that it stands still."""
 
     def usual_delay(self, otherwise: int) -> int:
         """n, the median; before the first echo what was believed `otherwise`."""
@@ -72,6 +80,11 @@ class Told(NamedTuple):
             inputs.append(Applied(echo.tick, echo.u))
         inputs += recalled
         return _found(told, inputs, tick) if told.missing else told, inputs
+
+    @property
+    def has_stood(self) -> bool:
+        """Whether the robot has stood still for long, as far as it tells."""
+        return self.stood > STOOD
 
     @property
     def settled(self) -> int:
@@ -111,6 +124,9 @@ class Flight(NamedTuple):
     plans: Plans | None = None
     """Where commands plan ahead: then n is what they are made for, and what is `sent` is what the
     robot will make of them."""
+    stands: bool = False
+    """Whether the robot stands still whatever it is sent, and is believed to go on so: it was
+    disarmed or stopped, refuses what it is sent, or does not get it."""
 
     @property
     def usual_delay(self) -> int:
@@ -133,13 +149,14 @@ def send(
 
     Where commands plan ahead, `plan` begins with the command itself.
     """
-    tick, sent, n, told, in_flight, _, plans = flight
+    tick, sent, n, told, in_flight, _, plans, stands = flight
     if plans:
         plans, u = plans.send(plan)
     sent = append(sent, _sent_after(sent, u), MEMORY)
-    applied, in_flight = in_flight.slide(u, robot.way(u))
+    believed = STAND if stands else u
+    applied, in_flight = in_flight.slide(believed, robot.way(believed))
     ahead = in_flight.product
-    return Flight(tick + 1, sent, n, told, in_flight, ahead, plans), applied
+    return Flight(tick + 1, sent, n, told, in_flight, ahead, plans, stands), applied
 
 
 def hear(
@@ -151,17 +168,20 @@ def hear(
     """With n as the echoes tell; and the inputs that were in force, as far as they are now known:
     from the echoes, and from what the robot was asked to recall.
 
-    When n has changed, what is still on its way is believed to take the new n ticks.
+    When n has changed, what is still on its way is believed to take the new n ticks; and when the
+    robot turns out not to obey, or to obey again, what is on its way is believed to be in vain, or
+    not.
     """
     if not (echoes or recalled):
         return flight, []
-    tick, sent, n, told, in_flight, ahead, plans = flight
+    tick, sent, n, told, in_flight, ahead, plans, stood = flight
     told, inputs = told.after(tick, echoes, recalled)
     seen = told.usual_delay(otherwise=flight.usual_delay)
     if plans and seen >= n:  # the robot is that far on in its plans
         plans, seen = plans.late(seen - n), n
-    flight = Flight(tick, sent, seen, told, in_flight, ahead, plans)
-    if seen == n:
+    stands = told.has_stood and _was_to_drive(flight, told.known)
+    flight = Flight(tick, sent, seen, told, in_flight, ahead, plans, stands)
+    if seen == n and stands == stood:
         return flight, inputs
     flight = _rebuilt(robot, flight)
     return flight, inputs + _believed(flight, since=told.known + 1)
@@ -169,7 +189,7 @@ def hear(
 
 def _heard(told: Told, echo: Echo, tick: int) -> Told:
     """With one more echo. A command that is held, for want of a newer one, tells nothing of n."""
-    recent, newest, known, missing, in_force, before, usual, spread = told
+    recent, newest, known, missing, in_force, before, usual, spread, stood = told
     made = echo.command_tick
     if made is not None and made > newest and 0 <= (delay := echo.tick - made) < MEMORY:
         newest = made
@@ -177,12 +197,19 @@ def _heard(told: Told, echo: Echo, tick: int) -> Told:
             recent = (*recent, delay)[-RECENT:]
             spread = _deviation(recent) if spread or delay != recent[0] else 0.0
     if echo.tick <= known:
-        return Told(recent, newest, known, missing, in_force, before, usual, spread)
+        return Told(recent, newest, known, missing, in_force, before, usual, spread, stood)
     if echo.tick > known + 1:
         before = before if missing else in_force
         missing += tuple(range(max(known + 1, echo.tick - MEMORY), echo.tick))
     usual = tick - 1 - echo.tick
-    return Told(recent, newest, echo.tick, missing, echo.u, before, usual, spread)
+    gap = echo.tick - known
+    stood = (stood + gap if gap <= FEW else 1) if echo.u.tolist() == AT_REST else 0
+    return Told(recent, newest, echo.tick, missing, echo.u, before, usual, spread, stood)
+
+
+def _was_to_drive(flight: Flight, known: int) -> bool:
+    """Whether the commands for tick `known`, and for STOOD ticks before, both meant it."""
+    return all(sent_for(flight, tick).tolist() != AT_REST for tick in (known - STOOD, known))
 
 
 def _deviation(delays: tuple[int, ...]) -> float:
@@ -201,14 +228,14 @@ def _found(told: Told, inputs: Sequence[Applied], tick: int) -> Told:
 
 def _rebuilt(robot: Ways, flight: Flight) -> Flight:
     in_flight = flight.in_flight.emptied()
-    for u in _sent_since(flight, flight.tick - flight.command_delay):
+    for u in _believed_since(flight, flight.tick - flight.command_delay):
         in_flight = in_flight.push(u, robot.way(u))
     return flight._replace(in_flight=in_flight, ahead=in_flight.product)
 
 
 def _believed(flight: Flight, since: int) -> list[Applied]:
     """What was in force from tick `since` to the present, if each command took n ticks."""
-    u = _sent_since(flight, since - flight.command_delay)
+    u = _believed_since(flight, since - flight.command_delay)
     return [Applied(tick, u[tick - since]) for tick in range(since, flight.tick)]
 
 
@@ -220,8 +247,9 @@ def _sent_after(sent: Log[Sent], u: Vector) -> Sent:
     return Sent(u, before.v + v, before.omega + omega)
 
 
-def believed_at(flight: Flight, tick: int) -> Vector:
-    """The input (2,) believed to be in force on [t_tick, t_{tick+1}), tick < `flight.tick`."""
+def sent_for(flight: Flight, tick: int) -> Vector:
+    """The input (2,) that is in force on [t_tick, t_{tick+1}), tick < `flight.tick`, if the robot
+    obeys."""
     items, length = flight.sent
     index = length - (flight.tick - (tick - flight.command_delay))
     return items[index].u if 0 <= index < length else STAND
@@ -229,6 +257,8 @@ def believed_at(flight: Flight, tick: int) -> Vector:
 
 def believed_sum(flight: Flight, since: int) -> Sums:
     """Of the inputs believed to have been in force from tick `since` to the present."""
+    if flight.stands:
+        return Sums(0.0, 0.0)
     last = flight.sent.length - 1 - flight.command_delay
     newest, oldest = _sum_up_to(flight, last), _sum_up_to(flight, last - (flight.tick - since))
     return Sums(newest.v - oldest.v, newest.omega - oldest.omega)
@@ -242,9 +272,11 @@ def _sum_up_to(flight: Flight, index: int) -> Sums:
     return Sums(v, omega)
 
 
-def _sent_since(flight: Flight, tick: int) -> list[Vector]:
-    """u_tick and all after it; standing still for what was sent before tick 0."""
+def _believed_since(flight: Flight, tick: int) -> list[Vector]:
+    """u_tick and all after it; standing still for what was sent before tick 0, or in vain."""
     count = flight.tick - tick
+    if flight.stands:
+        return [STAND] * count
     items, length = flight.sent
     sent = [each.u for each in items[max(length - count, 0) : length]]
     return [STAND] * (count - len(sent)) + sent

@@ -53,6 +53,11 @@ class Driver:
         return self._control.flight.usual_delay
 
     @property
+    def stands(self) -> bool:
+        """Whether the robot stands still, whatever it is sent."""
+        return self._control.flight.stands
+
+    @property
     def gated(self) -> int:
         """Measurements that were too wild to be used, by this driver and those before it."""
         return self._alarms.gated(self._controller, self._control)

@@ -33,6 +33,11 @@ from laglab_station.warned import Warnings
 LONGEST_GAP = MEMORY
 """Ticks without a word, after which nobody knows what the robot did meanwhile."""
 
+STANDS = (
+    "the robot stands still, whatever it is sent: see whether it is armed, refuses such commands, "
+    "or does not get them"
+)
+
 
 class Station:
     """Answers each tick of the robot once with ESTIMATE (unless `raw`) and COMMAND.
@@ -291,3 +296,5 @@ class Station:
             problem = str(error)
         if problem:
             self.warn("estimator", f"tick {self.tick}: {problem}")
+        if self._driver.stands:
+            self.warn("stands", f"tick {self.tick}: {STANDS}")

@@ -10,14 +10,14 @@ n = 0 it waits for the answer to this tick, so that n = 0 means no delay.
 from collections.abc import Mapping
 
 from laglab_gateway.config import GatewayConfig
-from laglab_gateway.drive import WHY_STOPPING, Safety, speeds, supervise
+from laglab_gateway.drive import speeds, supervise
 from laglab_gateway.link.fates import Fates
 from laglab_gateway.link.timeline import Direction
 from laglab_gateway.plant import Plant
 from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import RobotState, Services, standard_parameters
 from laglab_gateway.side import RobotSide
-from laglab_protocol import MAV_SEVERITY_ERROR, Measurement, Sender
+from laglab_protocol import Measurement, Sender
 
 
 class Gateway(RobotSide):
@@ -83,18 +83,14 @@ class Gateway(RobotSide):
         supervised = supervise(self._drive, k, Ts, safety)
         if supervised.mode is not self._drive.mode:
             self.audit.stopped(k)
-            self._say_why_stopping(safety)
+            if self._stopping.by_itself:
+                self.announce(f"no fresh command for {safety.link_timeout} s: stopping")
+        self._say_why_stopping(k - supervised.fresh, safety)
         self._drive = supervised
         self._speeds = self._armed(*speeds(self._drive, k, Ts, safety))
         self._memory.keep(k, self._speeds)
         if self._ending is None:
             self._plant.step(*self._speeds)
-
-    def _say_why_stopping(self, safety: Safety) -> None:
-        if self._rejected is None:
-            self.announce(f"no fresh command for {safety.link_timeout} s: stopping")
-        else:
-            self.announce(WHY_STOPPING[self._rejected], MAV_SEVERITY_ERROR)
 
     def close_tick(self) -> TraceRow:
         """On to k + 1, unless the run ends at k; says what happened at k."""

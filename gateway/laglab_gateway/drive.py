@@ -50,13 +50,6 @@ class Rejection(Enum):
     INCOMPLETE = "incomplete"
 
 
-WHY_STOPPING = {
-    Rejection.NOT_FINITE: "commands are not finite: stopping",
-    Rejection.OUT_OF_LIMITS: "commands are beyond V_MAX, OMEGA_MAX: stopping",
-}
-"""What to say when a robot stops although commands come, in at most 50 characters."""
-
-
 @checked
 class Safety:
     """The robot's own limits, and its failsafe."""

@@ -13,7 +13,7 @@ from typing import NamedTuple
 from msgspec.structs import replace
 
 from laglab_gateway.config import GatewayConfig
-from laglab_gateway.drive import WHY_STOPPING, Drive, Rejection, Safety, follow
+from laglab_gateway.drive import Drive, follow
 from laglab_gateway.link.fates import Fates
 from laglab_gateway.link.timeline import Direction
 from laglab_gateway.outcome import Outcome, reason_of
@@ -21,7 +21,6 @@ from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import RobotState, Services
 from laglab_gateway.side import RobotSide
 from laglab_protocol import (
-    MAV_SEVERITY_ERROR,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
     STATION_COMPONENT,
@@ -83,7 +82,6 @@ class Relay(RobotSide):
         self._heard = RobotTick(-1, [])
         self._last: Measurement | None = None
         self._in_force = -1
-        self._told_rejected: Rejection | None = None
 
     @property
     def state(self) -> RobotState:
@@ -191,7 +189,7 @@ class Relay(RobotSide):
                 self._asks.clear()
         if not self.services.arming.armed and self.tick + 1 < self._drive.fresh:
             frames.append(self._to_robot.frame(self._end_of_plan()))
-        self._say_why_stopping(safety)
+        self._say_why_stopping(self.tick + 1 - max(self._drive.fresh, self.first), safety)
         return frames
 
     def _end_of_plan(self) -> Command:
@@ -201,15 +199,6 @@ class Relay(RobotSide):
         )
         self._drive = follow(standstill, self.tick + 1)
         return standstill
-
-    def _say_why_stopping(self, safety: Safety) -> None:
-        """Once, when it stops: the robot itself only knows that nothing comes."""
-        silent = self.tick + 1 - max(self._drive.fresh, self.first)
-        stopping = silent * self._config.sample_time >= safety.link_timeout
-        rejected = self._rejected if stopping else None
-        if rejected is not None and rejected is not self._told_rejected:
-            self.announce(WHY_STOPPING[rejected], MAV_SEVERITY_ERROR)
-        self._told_rejected = rejected
 
     def _remember(self, asked: Recall) -> None:
         """Tell what the robot's measurements have told; the robot is asked for what they have not,

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from laglab_gateway.answer import Answer
 from laglab_gateway.config import GatewayConfig
-from laglab_gateway.drive import WHY_STOPPING, Drive, Rejection, Safety, follow_plan, rejection
+from laglab_gateway.drive import Drive, Rejection, Safety, follow_plan, rejection
 from laglab_gateway.incoming import Came, Incoming
 from laglab_gateway.link.channel import Channel
 from laglab_gateway.link.fates import FateKind, Fates
@@ -24,8 +24,10 @@ from laglab_gateway.record.rows import Notes
 from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import Asker, RobotState, Services, safety_now
 from laglab_gateway.speakers import from_station, is_for_robot
+from laglab_gateway.stopping import Stopping
 from laglab_protocol import (
     MAV_SEVERITY_EMERGENCY,
+    MAV_SEVERITY_ERROR,
     MAV_SEVERITY_WARNING,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
@@ -88,8 +90,7 @@ class RobotSide(ABC):
         self._memory = SpeedMemory()
         self._owed = Owed()
         self._drive = Drive()
-        self._rejected: Rejection | None = None
-        """Why no command was followed since the last one that was."""
+        self._stopping = Stopping()
         self._go_to(0)
 
     def _go_to(self, tick: int) -> None:
@@ -199,10 +200,17 @@ class RobotSide(ABC):
         """Follow from `tick` on a command that came across; False, and counted, when rejected."""
         if rejected := rejection(self._drive, planned.command, safety, planned.following):
             self._refuse(planned.command, tick, rejected)
-            self._rejected = rejected if rejected in WHY_STOPPING else self._rejected
+            self._stopping.refused(rejected)
             return False
-        self._drive, self._rejected = follow_plan(planned, tick), None
+        self._drive = follow_plan(planned, tick)
+        self._stopping.followed()
         return True
+
+    def _say_why_stopping(self, silent: int, safety: Safety) -> None:
+        """After so many ticks for which nothing has come into force."""
+        is_silent = silent * self._config.sample_time >= safety.link_timeout
+        if is_silent and (why := self._stopping.news()):
+            self.announce(why, MAV_SEVERITY_ERROR)
 
     @property
     def safety(self) -> Safety:
@@ -271,18 +279,11 @@ class RobotSide(ABC):
         sample: tuple[Cell, Cell, Cell],
         speeds: tuple[Cell, Cell],
     ) -> TraceRow:
-        time = self.elapsed * self._config.sample_time
-        return TraceRow(self.tick, time, *pose, *sample, *self._estimate, *self._sent, *speeds)
-
-    @property
-    def _estimate(self) -> tuple[Cell, Cell, Cell]:
-        estimates = self._answer.estimates
-        return estimates[0].pose if estimates else (None, None, None)
-
-    @property
-    def _sent(self) -> tuple[Cell, Cell]:
-        command = self._answer.command
-        return command.speeds if command else (None, None)
+        time, answer = self.elapsed * self._config.sample_time, self._answer
+        unsaid: tuple[Cell, Cell, Cell] = (None, None, None)
+        estimate = answer.estimates[0].pose if answer.estimates else unsaid
+        sent = answer.command.speeds if answer.command else unsaid[:2]
+        return TraceRow(self.tick, time, *pose, *sample, *estimate, *sent, *speeds)
 
     def end(self, reason: EndReason) -> bytes:
         """The frame that tells the station that the run is over."""

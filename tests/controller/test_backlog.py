@@ -150,4 +150,5 @@ def test_the_answers_of_a_slow_station_stay_fresh():
         thread.join(5)
     assert 10 < len(ages) < 35
     assert max(ages) < 25  # as it ends it would be 70 otherwise
-    assert station.warnings[-1].endswith("answers take longer than ticks, and a newer one had come")
+    behind = "answers take longer than ticks, and a newer one had come"
+    assert any(each.endswith(behind) for each in station.warnings)

@@ -5,7 +5,7 @@ import pytest
 
 from laglab_control import Controller, Echo, Measured, RobotModel, StationConfig
 from laglab_control.batch import BatchController, Pose
-from laglab_control.flight import believed_at
+from laglab_control.flight import sent_for
 
 N, M, TICKS = 4, 7, 120
 STARTS = np.array(((-3.0, -2.0), (-3.0, 1.0), (0.0, 1.5)))
@@ -42,5 +42,5 @@ def _answered(controller, control, z, k):
     if k < M:
         return controller.answer(control, [])
     s = k - M
-    echo = Echo(s, believed_at(control.flight, s), s - N if s >= N else None)
+    echo = Echo(s, sent_for(control.flight, s), s - N if s >= N else None)
     return controller.answer(control, [Measured(s, z[s])], [echo])

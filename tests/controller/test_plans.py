@@ -14,7 +14,7 @@ from laglab_control import (
     StationConfig,
 )
 from laglab_control.doubt import doubt
-from laglab_control.flight import believed_at, hear, send, take_off
+from laglab_control.flight import hear, send, sent_for, take_off
 
 MODEL = RobotModel()
 H = 8
@@ -90,7 +90,7 @@ def test_where_commands_come_later_the_robot_is_further_on_in_older_plans() -> N
             flight, _ = hear(MODEL, flight, [told])
     assert (flight.command_delay, flight.usual_delay) == (n, n + late)
     for j in range(40, 60):
-        assert believed_at(flight, j)[0] == pytest.approx(j - n - late + late / 100)
+        assert sent_for(flight, j)[0] == pytest.approx(j - n - late + late / 100)
     # beyond the plan its last entry is held
     assert flight.plans is not None
     _, u = flight.plans.late(H + 5).send(entries(60))

@@ -10,7 +10,9 @@ from laglab.results.numbers import deviation, loop_estimates
 from laglab.runs.inline import InlineLink
 from laglab.runs.robot_side import Setup, open_robot
 from laglab.runs.station_side import make_station
-from laglab_gateway import MemoryRecorder, Surroundings, TraceRow, trace_of
+from laglab.scenario import Scenario
+from laglab_control import STOOD
+from laglab_gateway import MemoryRecorder, Surroundings, Trace, TraceRow, trace_of
 from laglab_gateway.services import Arming
 from laglab_protocol import Listener, Receiver, Sender
 
@@ -87,6 +89,37 @@ def test_however_long_nobody_was_heard(silent: int) -> None:
     assert run.summary.link.stops == 1
 
 
+KNOWN = STOOD + 3
+"""Ticks at rest after which a robot that was to drive is taken not to obey."""
+
+
+@pytest.mark.parametrize("limit", ["v_limit", "omega_limit"])
+@pytest.mark.parametrize("estimator", ["delayed-ekf", "popf"])
+def test_a_robot_that_refuses_all_it_is_sent_is_where_it_is(limit: str, estimator: str) -> None:
+    """It echoes in time that nothing came into force: then nothing on its way does, either."""
+    overrides = {"estimator.kind": estimator, "duration": 3.0, f"safety.{limit}": 0.2}
+    run = laglab.run("fig6", overrides | {"law.v_max": 1.0, "law.omega_max": 1.7})
+    off = np.abs(deviation(run.trace, loop_estimates(run.trace)))
+    n, m = run.scenario.link.command_delay, run.scenario.link.measurement_delay
+    assert off[n + m + 20].max() > 0.02, "it might have driven"
+    assert off[n + m + KNOWN :].max() < 1e-6
+    assert any("stands still, whatever it is sent" in each for each in run.summary.warnings)
+    assert any("beyond V_MAX, OMEGA_MAX" in each for each in run.summary.warnings)
+
+
+def test_what_is_sent_in_vain_for_long_moves_nothing() -> None:
+    """Only commands are lost: the station hears that the robot has stopped by itself."""
+    lost = {"at": 1.0, "duration": 3.0, "direction": "command", "link": {"loss": 1.0}}
+    overrides = {"estimator.kind": "delayed-ekf", "link.event": [lost], "law.v_max": 1.0}
+    run = laglab.run("fig6", overrides | {"law.omega_max": 1.7, "duration": 6.0})
+    n, m = run.scenario.link.command_delay, run.scenario.link.measurement_delay
+    off = np.abs(deviation(run.trace, loop_estimates(run.trace))).max(axis=1)
+    stopped = 100 + n + 100  # the failsafe's time and its ramp
+    assert off[stopped : stopped + KNOWN].max() > 0.05
+    assert off[stopped + m + KNOWN : 400 + n].max() < 1e-6
+    assert off[400 + n + m + SOON :].max() < 1e-6
+
+
 class Hand(MemoryRecorder):
     """Somebody near the robot, who disarms it in the middle of an outage, and arms it again."""
 
@@ -102,15 +135,33 @@ class Hand(MemoryRecorder):
             self._arming.arm()
 
 
+def handled(scenario: Scenario, off: int, on: int) -> Trace:
+    """A run in which somebody disarms the robot at one tick, and arms it at another."""
+    with open_robot(scenario, Setup()) as robot:
+        hand = Hand(robot.services.arming, off, on)
+        link = InlineLink(make_station(scenario, Sender(200, 190)), Receiver())
+        robot.serve(Surroundings(Listener(link, robot.codec.receiver), hand))
+    return trace_of(hand.rows)
+
+
+@pytest.mark.parametrize("estimator", ["delayed-ekf", "popf"])
+@pytest.mark.parametrize("guard", [False, True])
+def test_a_robot_that_stays_disarmed_stands(estimator: str, guard: bool) -> None:
+    """As one that was stopped for good."""
+    overrides = {"estimator.kind": estimator, "estimator.guard": guard, "law.v_max": 1.0}
+    scenario = laglab.load("fig6", overrides | {"law.omega_max": 1.7, "duration": 5.0})
+    n, m = scenario.link.command_delay, scenario.link.measurement_delay
+    trace = handled(scenario, 115, 315)
+    off = np.abs(deviation(trace, loop_estimates(trace))).max(axis=1)
+    assert off[115 + m + KNOWN : 315].max() < 1e-6
+    assert off[315 + m].max() > 0.05, "nobody has told yet that it drives again"
+    assert off[315 + n + m + SOON :].max() < 1e-6
+
+
 def test_a_robot_that_was_disarmed_meanwhile_tells_so() -> None:
     event = {"at": 1.0, "duration": 0.4, "direction": "measurement", "link": {"loss": 1.0}}
     overrides = {"estimator.kind": "delayed-ekf", "link.event": [event], "law.v_max": 1.0}
-    scenario = laglab.load("fig6", overrides | {"duration": 2.5})
-    with open_robot(scenario, Setup()) as robot:
-        hand = Hand(robot.services.arming, 110, 125)
-        link = InlineLink(make_station(scenario, Sender(200, 190)), Receiver())
-        robot.serve(Surroundings(Listener(link, robot.codec.receiver), hand))
-    trace = trace_of(hand.rows)
+    trace = handled(laglab.load("fig6", overrides | {"duration": 2.5}), 110, 125)
     assert (trace["v"][112:125] == 0).all()
     assert (trace["v"][[110, 127]] > 0.5).all()
     off = deviation(trace, loop_estimates(trace))

@@ -14,7 +14,7 @@ import numpy as np
 
 from laglab.runs.robot_side import link_fates
 from laglab.scenario import Scenario
-from laglab_control import MEMORY, Applied, Told, Vector
+from laglab_control import MEMORY, STOOD, Applied, Told, Vector
 from laglab_control.batch.impaired import Arrivals, Course, Missing, News, Tokens
 from laglab_gateway import Channel, Safety
 from laglab_gateway.drive import Drive, follow, rejection, speeds, supervise
@@ -39,7 +39,8 @@ class Schedule(NamedTuple):
 
     course: Course
     beyond: bool
-    """Whether something reaches further back than everybody remembers."""
+    """Whether something reaches further back than everybody remembers, or the robot stands for so
+    long that its station does not believe any more that it does as it is sent."""
 
 
 def schedule_of(scenario: Scenario) -> Schedule:
@@ -62,7 +63,8 @@ def _schedule(scenario: Scenario) -> Schedule:
             robot.settle(tick)
         record.applied.append(robot.in_force)
     course = record.course()
-    return Schedule(course, robot.most_at_once >= UNANNOUNCED or course.reach >= MEMORY)
+    too_far = robot.most_at_once >= UNANNOUNCED or course.reach >= MEMORY
+    return Schedule(course, too_far or station.has_seen_it_stand)
 
 
 def _no_bytes(_: object) -> bytes:
@@ -129,6 +131,8 @@ class _Station:
         self._believed: list[Token] = []
         self._seen = set[int]()
         self._newest = -1
+        self.has_seen_it_stand = False
+        """Though it had been sent to drive."""
 
     def answer(
         self, tick: int, came: list[Measurement | Recalled], record: "_Record"
@@ -142,6 +146,8 @@ class _Station:
             told = echoes(measurements, 0, tick)
             self._told, inputs = self._told.after(tick, told, recalled(answers, 0, tick))
             self._put_right(tick, inputs, record)
+            to_drive = self._told.known - STOOD >= self._delay
+            self.has_seen_it_stand |= self._told.has_stood and to_drive
         self._arrive(tick, measurements, record)
         record.keep(self._told, self._delay)
         return self._questions.ask(self._told, 0, tick, ROBOT)
