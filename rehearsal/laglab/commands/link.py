@@ -24,6 +24,7 @@ from laglab.link import (
     read_measured,
     read_table,
     real_sizes,
+    replaying,
     scenario_toml,
     suggestions,
     write_link_log,
@@ -257,7 +258,7 @@ def fit(
     law = station_config(on).law
     margin = delay_margin(law, interval) if isinstance(law, PolarLaw) else None
     console.print(choices_table(found, margin))
-    for line in suggestions(found, out, file, scenario):
+    for line in suggestions(found, out, replaying(scenario, file, (n, m), interval)):
         console.print(line, highlight=False)
     print(out)
     if figure is not None:

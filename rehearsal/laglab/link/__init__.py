@@ -4,7 +4,7 @@
 `MeasuredLink`, which `write_link_log` keeps as link.csv. `fit` makes a scenario's `[link]` of it.
 """
 
-from laglab.link.advice import suggestions
+from laglab.link.advice import replaying, suggestions
 from laglab.link.errors import LinkPlaceError
 from laglab.link.figure import draw_fit
 from laglab.link.fitting import fit
@@ -33,6 +33,7 @@ __all__ = [
     "read_measured",
     "read_table",
     "real_sizes",
+    "replaying",
     "scenario_toml",
     "suggestions",
     "write_link_log",

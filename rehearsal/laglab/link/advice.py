@@ -4,14 +4,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from laglab.link.fitting import Fit
+from laglab.scenario import load
 
 FAR = 0.1
 """The Kolmogorov-Smirnov distance beyond which a fit is a poor one."""
 
 
-def suggestions(fit: Fit, link: Path, frames: Path, scenario: str) -> Iterator[str]:
-    """n and m without play-out, bounds with it, and how to rehearse the `scenario` on what was
-    measured: fitted in the file `link`, and frame by frame."""
+def suggestions(fit: Fit, link: Path, replay: str) -> Iterator[str]:
+    """n and m without play-out, bounds with it, and how to rehearse on what was measured: fitted in
+    the file `link`, and frame by frame by the command `replay`."""
     yield (
         "* suggested; to the margin: ticks left of the delay margins, on the way to the goal and "
         "at it, that the law has where the station does not predict."
@@ -29,7 +30,13 @@ def suggestions(fit: Fit, link: Path, frames: Path, scenario: str) -> Iterator[s
             f"The fit is a poor one: its delays are {max(fit.distances):.2g} from those measured, "
             "which come in an order that no such link has: rather replay them."
         )
-    yield (
-        f"Rehearse on the fitted link: laglab run {link}; on the very frames: "
-        f"laglab run {scenario} -n 0 -m 0 --timeline {frames}."
-    )
+    yield (f"Rehearse on the fitted link: laglab run {link}; on the very frames: {replay}.")
+
+
+def replaying(scenario: str, frames: Path, fixed: tuple[int, int], interval: float) -> str:
+    """The command that lets happen to the scenario's frames what did to those in the file, which
+    came `interval` [s] apart; `fixed` (n, m) [ticks] is what the file leaves out."""
+    n, m = fixed
+    command = f"laglab run {scenario} -n {n} -m {m} --timeline {frames}"
+    is_usual = interval == load(scenario).sample_time
+    return command if is_usual else f"{command} --set sample_time={interval:g}"

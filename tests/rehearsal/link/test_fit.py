@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import laglab
 from laglab.link.advice import suggestions
 from laglab.link.fitting import (
     choices,
@@ -144,15 +145,22 @@ def test_the_fitted_link_does_what_was_measured() -> None:
             assert at[1] == pytest.approx(at[0], rel=0.05)
 
 
-FILES = Path("link.toml"), Path("link.csv")
+LINK = Path("link.toml")
 
 
 def test_a_poor_fit_is_told() -> None:
     drift = 0.02 + 0.02 * np.arange(900.0) / 900  # one slow rise: no stationary link does that
     found = fit(MeasuredLink(Flow(TS * np.arange(900.0), drift, 9), NONE, TS), 0.01)
     assert max(found.distances) > 0.15
-    assert "a poor one" in " ".join(suggestions(found, *FILES, "lab"))
-    assert "a poor one" not in " ".join(suggestions(fit(MEASURED, 0.01), *FILES, "lab"))
+    assert "a poor one" in " ".join(suggestions(found, LINK, "again"))
+    assert "a poor one" not in " ".join(suggestions(fit(MEASURED, 0.01), LINK, "again"))
+
+
+def test_what_many_frames_share_is_judged_as_finely_as_it_is_written() -> None:
+    """A line of limited bandwidth delays most frames by the same 29/7200 s."""
+    delay = np.where(np.random.default_rng(2).random(900) < 0.6, 29 / 7200, 0.011)
+    found = fit(MeasuredLink(Flow(TS * np.arange(900.0), delay, 9), NONE, TS), 0.01)
+    assert max(found.distances) < 0.05
 
 
 def test_bounds_are_the_least_that_keep_their_word() -> None:
@@ -201,18 +209,37 @@ def test_fitted_rehearsed_and_replayed(said: Said, tmp_path: Path) -> None:
     said("run", "link.toml", *inline)
     rehearsed = read_measured(tmp_path / "runs" / "link" / "link.csv", TS)
     assert len(rehearsed.command.delay) == 101
-    said("link", "fit", "runs/link/link.csv", "-n", "2", "-m", "4", "--out", "2.toml")
-    link = load("2.toml").link
-    assert (link.command_delay, link.measurement_delay) == (2, 4)
-    said("run", "lab", *inline, "--timeline", "link.csv", "-n", "0", "-m", "0", "--out", "again")
+    said(*very_frames(told), *inline, "--out", "again")
     again = read_measured(tmp_path / "again" / "link.csv", TS)
     np.testing.assert_array_equal(again.command.delay, MEASURED.command.delay[:101].round(7))
+
+
+def very_frames(told: str) -> list[str]:
+    """The command that a fit tells for rehearsing on the frames themselves, without its name."""
+    command = " ".join(told.split()).split("on the very frames: laglab ")[1].split(". ")[0]
+    return command.removesuffix(".").split()
+
+
+def test_a_runs_own_link_is_fitted_and_replayed(said: Said, tmp_path: Path) -> None:
+    """Its file leaves the fixed delays out."""
+    said("run", "lab-radio", "--transport", "inline", "--duration", "4", "--out", "first")
+    told = said("link", "fit", "first/link.csv", "-n", "10", "-m", "20", "--out", "2.toml")
+    link = load("2.toml").link
+    assert (link.command_delay, link.measurement_delay) == (10, 20)
+    command = very_frames(told)
+    command[1] = "lab-radio"
+    said(*command, "--transport", "inline", "--duration", "4", "--out", "again")
+    first, again = (laglab.open_run(tmp_path / name) for name in ("first", "again"))
+    np.testing.assert_array_equal(first.trace["x"], again.trace["x"])
 
 
 def test_ticks_are_as_long_as_the_measurements(said: Said, tmp_path: Path) -> None:
     flow = Flow(0.04 * np.arange(50.0), np.full(50, 0.08), 100)
     write_link_log(MeasuredLink(flow, flow, 0.04), tmp_path / "link.csv")
-    said("link", "fit", "--interval", "0.04")
+    command = very_frames(said("link", "fit", "--interval", "0.04"))
+    assert command[-2:] == ["--set", "sample_time=0.04"]
+    said(*command, "--transport", "inline", "--duration", "2", "--out", "again")
+    assert laglab.open_run(tmp_path / "again").scenario.sample_time == 0.04
     fitted = load(str(tmp_path / "link.toml"))
     assert fitted.link.command_delay * fitted.sample_time == pytest.approx(0.08)
 

@@ -5,7 +5,7 @@ from statistics import NormalDist
 
 import numpy as np
 
-from laglab.link.fitting.goodness import distance
+from laglab.link.fitting.goodness import DIGITS, distance
 from laglab.link.measured import Array
 from laglab_gateway import ExtraDelay
 
@@ -17,8 +17,6 @@ STEPS = (10, 20, 50, 100, 200)
 TAIL, TAIL_CLOSE = 0.99, 0.03
 DRAWN = 4000
 """Quantiles that stand for a distribution."""
-DIGITS = 6
-"""Of a delay in seconds: no clock tells finer."""
 LEAST_SCATTER = 2e-5
 """[s] What scatters less is constant: clocks and programs do."""
 LEAST_CORRELATION = 0.05
@@ -65,7 +63,7 @@ def _table(came: Array, correlation: float) -> ExtraDelay:
 def distance_to(came: Array, fitted: ExtraDelay) -> float:
     """The largest difference of the shares that stay within a delay, measured and fitted."""
     drawn = np.array([fitted.at((i + 0.5) / DRAWN) for i in range(DRAWN)])
-    return distance(np.round(came, DIGITS), np.round(drawn, DIGITS))
+    return distance(came, drawn)
 
 
 def wandering(delay: Array) -> float:

@@ -8,6 +8,8 @@ from laglab_gateway import FateKind, Impairments, RandomFates
 LEAST = 20_000
 """[frames] With fewer, chance decides."""
 SEED = 1
+DIGITS = 6
+"""Of a delay in seconds: no clock tells finer, and a fit is written so."""
 
 
 def simulated(link: Impairments, fixed: float, like: Flow, interval: float) -> Flow:
@@ -25,9 +27,11 @@ def simulated(link: Impairments, fixed: float, like: Flow, interval: float) -> F
 
 
 def distance(first: Array, second: Array) -> float:
-    """The Kolmogorov-Smirnov distance of two samples; 0 where one is empty."""
+    """The Kolmogorov-Smirnov distance of two samples [s], to DIGITS: a value that many share is
+    the same in both; 0 where one is empty."""
     if not (len(first) and len(second)):
         return 0.0
+    first, second = np.round(first, DIGITS), np.round(second, DIGITS)
     both = np.concatenate([first, second])
     shares = [
         np.searchsorted(np.sort(each), both, side="right") / len(each) for each in (first, second)
