@@ -26,7 +26,7 @@ from laglab_gateway.link.timeline import DIRECTIONS, Direction, Event, first_tic
 from laglab_gateway.loops.lockstep import serve_lockstep
 from laglab_gateway.loops.realtime import serve_realtime
 from laglab_gateway.loops.remote import serve_remote
-from laglab_gateway.loops.surroundings import Patience, Served, Surroundings
+from laglab_gateway.loops.surroundings import Patience, Served, Surroundings, served
 from laglab_gateway.loops.watch import Watch, Watcher
 from laglab_gateway.outcome import Outcome
 from laglab_gateway.plant import Plant, Reading
@@ -139,6 +139,7 @@ __all__ = [
     "serve_lockstep",
     "serve_realtime",
     "serve_remote",
+    "served",
     "standard_parameters",
     "trace_of",
     "trace_pieces",

@@ -20,6 +20,7 @@ from laglab_gateway.link.timeline import Direction
 from laglab_gateway.memory import Owed, SpeedMemory
 from laglab_gateway.outcome import Outcome, reason_of
 from laglab_gateway.record.audit import Audit, DirectionAudit
+from laglab_gateway.record.lateness import Lateness
 from laglab_gateway.record.rows import Notes
 from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import Asker, RobotState, Services, safety_now
@@ -74,6 +75,8 @@ class RobotSide(ABC):
         self.station_settings: Settings | None = None
         self.audit = Audit(DirectionAudit(n), DirectionAudit(m))
         self.notes = Notes(Ts)
+        self.lateness: Lateness | None = None
+        """Of its ticks, where the wall clock paces them."""
         self.services = services
         self.settings = config.settings
         self._config = config

@@ -2,8 +2,7 @@
 
 from laglab_gateway.core import Gateway
 from laglab_gateway.loops.conversation import Conversation
-from laglab_gateway.loops.surroundings import Served, Surroundings
-from laglab_protocol import EndReason
+from laglab_gateway.loops.surroundings import Served, Surroundings, served
 
 
 def serve_lockstep(gateway: Gateway, around: Surroundings) -> Served:
@@ -29,7 +28,7 @@ def serve_lockstep(gateway: Gateway, around: Surroundings) -> Served:
             if gateway.immediate:
                 gateway.settle()
             conversation.finish_tick()
-    return Served(gateway.stop(EndReason.FAILED), gateway.audit.report(), None)
+    return served(gateway)
 
 
 def _await_answer(gateway: Gateway, conversation: Conversation) -> None:

@@ -6,10 +6,9 @@ What has arrived by a deadline counts; the link's own delay adds to n and m, and
 
 from laglab_gateway.core import Gateway
 from laglab_gateway.loops.conversation import Conversation
-from laglab_gateway.loops.surroundings import Served, Surroundings
+from laglab_gateway.loops.surroundings import Served, Surroundings, served
 from laglab_gateway.record.lateness import Lateness
 from laglab_gateway.record.rows import TimingRow
-from laglab_protocol import EndReason
 
 
 def serve_realtime(gateway: Gateway, around: Surroundings, period: float) -> Served:
@@ -25,7 +24,7 @@ def serve_realtime(gateway: Gateway, around: Surroundings, period: float) -> Ser
         TraceError: what happened could not be kept.
     """
     conversation = Conversation(gateway, around)
-    lateness = Lateness(period)
+    lateness = gateway.lateness = Lateness(period)
     with conversation.run():
         conversation.wait_for_station()
         start = conversation.now()
@@ -43,9 +42,7 @@ def serve_realtime(gateway: Gateway, around: Surroundings, period: float) -> Ser
             answer = None if answered is None else answered - deadline - late
             around.recorder.timing(TimingRow(gateway.tick, late, answer))
             conversation.finish_tick()
-    timesync = gateway.services.timesync
-    link = gateway.audit.report(timesync.report() if timesync else None)
-    return Served(gateway.stop(EndReason.FAILED), link, lateness.report())
+    return served(gateway)
 
 
 def _listen_until(deadline: float, gateway: Gateway, conversation: Conversation) -> float | None:

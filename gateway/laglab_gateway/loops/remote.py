@@ -7,7 +7,7 @@ from time import monotonic
 
 from laglab_gateway.errors import PlantSilentError
 from laglab_gateway.loops.conversation import END_TRIES, Conversation
-from laglab_gateway.loops.surroundings import Patience, Served, Surroundings
+from laglab_gateway.loops.surroundings import Patience, Served, Surroundings, served
 from laglab_gateway.relay import Relay
 from laglab_gateway.speakers import from_robot
 from laglab_protocol import (
@@ -155,9 +155,7 @@ def serve_remote(relay: Relay, robot: Listener, around: Surroundings) -> Served:
             for said in line.refusals():
                 around.warn(said)
             line.check_silence()
-    timesync = relay.services.timesync
-    link = relay.audit.report(timesync.report() if timesync else None)
-    return Served(relay.stop(EndReason.FAILED), link, None)
+    return served(relay)
 
 
 def _relay_ticks(

@@ -10,7 +10,8 @@ from laglab_gateway.outcome import Outcome
 from laglab_gateway.record.audit import LinkReport
 from laglab_gateway.record.lateness import TimingReport
 from laglab_gateway.record.recorder import Recorder
-from laglab_protocol import Listener
+from laglab_gateway.side import RobotSide
+from laglab_protocol import EndReason, Listener
 
 
 def unheard(_: object) -> None:
@@ -58,3 +59,13 @@ class Served(NamedTuple):
     link: LinkReport
     timing: TimingReport | None
     """Of ticks on the wall clock; None where ticks wait for the station."""
+
+
+def served(side: RobotSide) -> Served:
+    """How a run went; of one that was cut short, how far it went, as one that failed."""
+    timesync, lateness = side.services.timesync, side.lateness
+    return Served(
+        side.stop(EndReason.FAILED),
+        side.audit.report(timesync.report() if timesync else None),
+        lateness.report() if lateness else None,
+    )

@@ -26,7 +26,9 @@ def serve_alone(robot: OpenRobot, around: Surroundings) -> Ending:
         with short_pauses(), closing(around.recorder):
             served = robot.serve(replace(around, progress=clock, warn=warn))
     except SIDE_ERRORS as error:
-        return _cut_short(error, clock, warnings)
+        so_far = robot.so_far()
+        cut = _cut_short(error, clock, warnings)
+        return replace(cut, link=so_far.link, timing=so_far.timing)
     return Ending(
         outcome=served.outcome,
         loop_seconds=clock.seconds,

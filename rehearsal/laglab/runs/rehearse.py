@@ -19,6 +19,7 @@ from laglab.runs.pauses import short_pauses
 from laglab.runs.processes.child import LOOK_UP, Child, Inbox, Letter, started
 from laglab.runs.processes.reports import (
     Answered,
+    CutShort,
     Ended,
     Failed,
     Finished,
@@ -27,7 +28,7 @@ from laglab.runs.processes.reports import (
     Progress,
     Warned,
 )
-from laglab.runs.robot_side import Setup, open_robot
+from laglab.runs.robot_side import OpenRobot, Setup, open_robot
 from laglab.runs.station_side import make_station
 from laglab.runs.waiting import START
 from laglab.scenario import Scenario
@@ -61,6 +62,7 @@ def rehearse_inline(
     clock = LoopClock(lambda tick: progress(tick, now()))
     warnings: list[str] = []
     station: Station | None = None
+    robot: OpenRobot | None = None
     try:
         with (
             open_robot(scenario, setup) as robot,
@@ -76,6 +78,9 @@ def rehearse_inline(
     except SIDE_ERRORS as error:
         begun = clock.seconds > 0 or isinstance(error, CUT_SHORT)
         ending = Ending(problem=str(error), begun=begun)
+        if robot is not None:
+            so_far = robot.so_far()
+            ending = replace(ending, link=so_far.link, timing=so_far.timing)
     else:
         ending = Ending(served.outcome, link.problem, link=served.link, timing=served.timing)
     ending = replace(ending, loop_seconds=clock.seconds).warned(warnings)
@@ -204,6 +209,8 @@ class _Rehearsal:
                     ending, outcome=outcome, loop_seconds=seconds, link=link, timing=timing
                 )
                 self._finished = True
+            case CutShort(seconds, link, timing):
+                self._ending = replace(ending, loop_seconds=seconds, link=link, timing=timing)
             case Failed(reason, begun):
                 self._fail(reason, begun)
             case Ended(how):

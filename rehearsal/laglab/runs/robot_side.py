@@ -26,6 +26,7 @@ from laglab_gateway import (
     RandomFates,
     RecordedFates,
     Relay,
+    RobotSide,
     Served,
     Services,
     Surroundings,
@@ -38,6 +39,7 @@ from laglab_gateway import (
     serve_lockstep,
     serve_realtime,
     serve_remote,
+    served,
     standard_parameters,
 )
 from laglab_protocol import (
@@ -177,6 +179,8 @@ class OpenRobot:
     services: Services
     codec: Codec
     serve: Callable[[Surroundings], Served]
+    so_far: Callable[[], Served]
+    """What `serve` would give now: for when it raises."""
     unsigned: bool
     """Whether those who watch need no key."""
     has_key: bool
@@ -210,9 +214,7 @@ def open_robot(scenario: Scenario, setup: Setup) -> Iterator[OpenRobot]:
             with open_plant(scenario) as plant:
                 gateway = make_gateway(scenario, plant, codec.sender, setup.armed)
                 serve = partial(_serve_simulated, scenario, gateway, plant.warnings)
-                yield OpenRobot(
-                    gateway.services, codec, serve, setup.unsigned, setup.key is not None
-                )
+                yield _opened(gateway, codec, serve, setup)
         else:
             if scenario.plant.event:
                 raise UnplaceableError(
@@ -226,7 +228,20 @@ def open_robot(scenario: Scenario, setup: Setup) -> Iterator[OpenRobot]:
                 refuse_open_door(robot, setup.plant_key, setup.unsigned, "--plant-key")
                 relay = _relay(scenario, codec.sender, line.sender, setup.armed)
                 serve = partial(serve_remote, relay, Listener(robot, line.receiver))
-                yield OpenRobot(relay.services, codec, serve, setup.unsigned, setup.key is not None)
+                yield _opened(relay, codec, serve, setup)
+
+
+def _opened(
+    side: RobotSide, codec: Codec, serve: Callable[[Surroundings], Served], setup: Setup
+) -> OpenRobot:
+    return OpenRobot(
+        services=side.services,
+        codec=codec,
+        serve=serve,
+        so_far=partial(served, side),
+        unsigned=setup.unsigned,
+        has_key=setup.key is not None,
+    )
 
 
 def _serve_simulated(

@@ -16,6 +16,8 @@ from laglab.studies.sweep.study import Study
 from laglab_control import PluginError
 from laglab_gateway import read_trace
 
+from ..studying import there
+
 Laglab = Callable[..., "subprocess.CompletedProcess[str]"]
 Ended = Callable[..., tuple[int, str, str]]
 Refused = Callable[..., str]
@@ -132,6 +134,26 @@ def test_stations_with_them_are_tried_and_studies_run_them_one_by_one(
     studied = ended("sweep", "study.toml", "--set", "duration=1.0", "--workers", "1")
     assert studied.code == 0, studied.err
     assert "there is no mine:Watchable for many robots" in studied.out + studied.err
+
+
+def test_a_run_that_fails_costs_a_study_no_other(ended: Ended, brought: Path) -> None:
+    """It is said which, all else is kept, and only that is left to do."""
+    (brought / "study.toml").write_text(
+        'scenario = "lab"\nseeds = [3]\n[grid]\n'
+        '"estimator.kind" = ["mine:Failing", "mine:Watchable", "delayed-ekf"]\n'
+    )
+    told = ("--set", "duration=1.0", "--set", "estimator.guard=false")
+    sweep = ("sweep", "study.toml", *told, "--workers", "1", "--out", "study")
+    said = "estimator.kind = mine:Failing, seed 3: tick 40: mine:Failing.correct: ValueError"
+    kept = []
+    for _ in range(2):
+        code, _, stderr = ended(*sweep)
+        assert code == 4
+        assert said in " ".join(stderr.split())
+        assert "Traceback" not in stderr
+        kept.append(there(brought / "study"))
+    assert kept[0] == kept[1]
+    assert len(kept[0]) == 2
 
 
 @pytest.mark.parametrize("key", ["estimator.kind", "law.kind"])

@@ -100,14 +100,17 @@ def test_whatever_it_answers_at_tick_40_is_told(what: str) -> None:
 
 @pytest.mark.usefixtures("brought")
 @pytest.mark.parametrize("transport", ["inline", "udp"])
-def test_where_the_robot_fails_the_station_has_its_say(
+def test_where_the_robot_fails_both_sides_have_their_say(
     tmp_path: Path, transport: rehearse.Transport
 ) -> None:
-    """And what both sides warn of is told once."""
+    """And what both warn of is told once."""
     told = {"plant.kind": "broken:Halting", "safety.v_limit": 0.01, "duration": 2.0}
     ending = run_into(tmp_path / "run", load("lab", told), transport, rehearse.unheard)
     assert "the motor burnt" in ending.problem
     assert ending.station is not None
+    assert ending.link is not None
+    assert ending.link.measurement.arrived == 0 < ending.link.command.arrived
+    assert ending.loop_seconds > 0
     warned = [text for text in ending.warnings if "told different things" in text]
     assert len(warned) == 1
 

@@ -54,6 +54,14 @@ class Finished(Struct, frozen=True, tag=True):
     timing: TimingReport | None
 
 
+class CutShort(Struct, frozen=True, tag=True):
+    """How far the robot's side came before it failed, as it says next."""
+
+    loop_seconds: float
+    link: LinkReport
+    timing: TimingReport | None
+
+
 class Answered(Struct, frozen=True, tag=True):
     """The station's side is through."""
 
@@ -88,4 +96,15 @@ class Ended(Struct, frozen=True, tag=True):
     how: str
 
 
-Report = Listening | Progress | Warned | Finished | Answered | Failed | Computed | Showing | Ended
+Report = (
+    Listening
+    | Progress
+    | Warned
+    | Finished
+    | CutShort
+    | Answered
+    | Failed
+    | Computed
+    | Showing
+    | Ended
+)

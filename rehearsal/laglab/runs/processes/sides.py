@@ -11,6 +11,7 @@ from laglab.runs.pauses import short_pauses
 from laglab.runs.processes.child import Tell
 from laglab.runs.processes.reports import (
     Answered,
+    CutShort,
     Failed,
     Finished,
     Listening,
@@ -43,17 +44,20 @@ def robot_side(order: Order, tell: Tell) -> None:
             begun = True
             recorder, now = watched(all_told, scenario, order.plant)
             clock = LoopClock(lambda tick: tell(Progress(tick, clock.seconds, now())))
-            served = robot.serve(
-                Surroundings(
-                    Listener(endpoint, robot.codec.receiver),
-                    recorder,
-                    Patience(silence=scenario.silence_timeout, connect=START),
-                    progress=clock,
-                    warn=lambda text: tell(Warned(text)),
-                )
+            around = Surroundings(
+                Listener(endpoint, robot.codec.receiver),
+                recorder,
+                Patience(silence=scenario.silence_timeout, connect=START),
+                progress=clock,
+                warn=lambda text: tell(Warned(text)),
             )
-        reason, tick = served.outcome
-        tell(Finished(reason, tick, clock.seconds, served.link, served.timing))
+            try:
+                (reason, tick), link, timing = robot.serve(around)
+            except SIDE_ERRORS:
+                _, link, timing = robot.so_far()
+                tell(CutShort(clock.seconds, link, timing))
+                raise
+        tell(Finished(reason, tick, clock.seconds, link, timing))
     except SIDE_ERRORS as error:
         tell(Failed(str(error), begun or isinstance(error, CUT_SHORT)))
 

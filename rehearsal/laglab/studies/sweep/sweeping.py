@@ -18,6 +18,8 @@ from laglab.studies.sweep.study import Study
 from laglab.studies.sweep.work import Work, checked_work
 from laglab.studies.workers import Executor, Processes, as_done
 
+MOST_FAILED = 20
+"""So many failures are no accident: the rest would fail, too."""
 AHEAD = 512
 """Tasks that are handed out at once: as many as a large cluster has hands, and no more, so that
 memory always has room."""
@@ -69,6 +71,7 @@ def compute(
 ) -> None:
     """The cells that are not there, or all of them `again`; `told` of each, its runs and cost.
 
+    A run that fails is no reason to leave out the others: what failed is said at the end.
     Raises: RunError, ResultsError. What had been done until then stays.
     """
 
@@ -76,6 +79,7 @@ def compute(
         """Looked for when it is its turn: somebody else may have computed it meanwhile."""
         return (cell for cell in study.cells() if again or not folder.has(cell))
 
+    failed: list[str] = []
     for task, future in as_done(executor, done, grouped(wanted()), AHEAD):
         try:
             contents = future.result()
@@ -87,5 +91,16 @@ def compute(
                 "done is kept, and the same command goes on from there"
             ) from error
         for cell, content in zip(task.cells, contents, strict=True):
+            if isinstance(content, str):
+                failed.append(content)
+                continue
             folder.keep(cell, content)
             told(len(cell.seeds), seconds(cell))
+        if len(failed) >= MOST_FAILED:
+            break
+    if failed:
+        others = f" (and {len(failed) - 1} more such)" if failed[1:] else ""
+        raise RunError(
+            f"{study.name}: {failed[0]}{others}: all else that is done is kept, and the same "
+            "command goes on from there"
+        )

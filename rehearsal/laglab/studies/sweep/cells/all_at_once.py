@@ -39,12 +39,13 @@ def _in_common(scenario: Scenario) -> tuple[bool, str]:
 
 def _together(cells: Sequence[Cell]) -> Iterator[Judgements]:
     """One batch."""
-    scenario, scenarios = cells[0].scenario, [run for cell in cells for run in cell.runs()]
+    runs = [(cell, run) for cell in cells for run in cell.runs()]
+    scenario, scenarios = cells[0].scenario, [run for _, run in runs]
     judge = Judge(scenario.target, scenario.link.m, len(scenarios))
     ends = run_many(scenarios, lambda ticks: judge.add(_recorded(ticks)))
     judged = judge.judgements(np.where(ends.diverged, ends.last_tick, np.nan))
     for robot in np.flatnonzero(ends.unsure):
-        alone = judged_alone(scenarios[robot])
+        alone = judged_alone(*runs[robot])
         for column, value in zip(judged, alone, strict=True):
             column[robot] = value[0]
     first = 0

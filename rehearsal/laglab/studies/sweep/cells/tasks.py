@@ -39,8 +39,9 @@ def grouped(cells: Iterable[Cell]) -> Iterator[Task]:
         yield Task(tuple(some), code_version())
 
 
-def done(task: Task) -> list[bytes]:
-    """Wherever it is done: each cell's table, as the contents of a Parquet file.
+def done(task: Task) -> list[bytes | str]:
+    """Wherever it is done: each cell's table, as the contents of a Parquet file; or why a run of it
+    failed.
 
     The same bytes for the same cell, as far as pyarrow is the same. Raises RunError.
     """
@@ -48,7 +49,12 @@ def done(task: Task) -> list[bytes]:
         raise RunError(
             f"a worker has laglab {code_version()}, not {task.code} as here: install the same there"
         )
-    return [_file(table) for table in computed(task.cells)]
+    try:
+        return [_file(table) for table in computed(task.cells)]
+    except RunError as error:
+        if len(task.cells) == 1:
+            return [str(error)]
+    return [each for cell in task.cells for each in done(Task((cell,), task.code))]
 
 
 def _file(table: pa.Table) -> bytes:
