@@ -49,6 +49,8 @@ from laglab_protocol import EndReason
 from laglab_station import StationReport, heard, read_session
 
 CONVERGED = "converged", "did not converge"
+THE_STATIONS = "the station's filter"
+"""A gateway alone does not know by which its station estimates."""
 
 
 class Way(NamedTuple):
@@ -163,15 +165,16 @@ def summarise(
     converged = completed and has_converged(end, wanted)
     final = _final(end, wanted)
     seconds = ending.loop_seconds
-    in_loop = {scenario.estimator.kind: numbers.rms_error} if compared else {}
+    estimator = THE_STATIONS if way.side == "robot" else scenario.estimator.kind
+    in_loop = {estimator: numbers.rms_error} if compared else {}
     return Summary(
         laglab=laglab_version(),
         scenario=scenario.name,
         side=way.side,
         transport=way.transport,
         plant=way.plant,
-        estimator=scenario.estimator.kind,
-        law=scenario.law.kind,
+        estimator=estimator,
+        law="unknown" if way.side == "robot" else scenario.law.kind,
         n=scenario.link.n,
         m=scenario.link.m,
         seed=scenario.seed,

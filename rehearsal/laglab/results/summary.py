@@ -64,7 +64,9 @@ class Summary(Struct, frozen=True, kw_only=True):
     """The robot's kind or its FMU's file, or the address of the real one; of a station alone,
     unknown."""
     estimator: str
+    """Its kind; of a gateway alone, which does not know its station's, `the station's filter`."""
     law: str
+    """Its kind; of a gateway alone, `unknown`."""
     n: int
     m: int
     seed: int

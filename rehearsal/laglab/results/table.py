@@ -31,7 +31,7 @@ def summary_rows(summary: Summary) -> dict[str, str]:
     return {
         "scenario": f"{summary.scenario} (seed {summary.seed}, {summary.transport})",
         "estimator": summary.estimator,
-        **({} if summary.law == "polar" else {"law": summary.law}),
+        **({} if summary.law in ("polar", "unknown") else {"law": summary.law}),
         "delays n, m": f"{summary.n} and {summary.m} ticks",
         f"pose error at the end{seen}": f"ρ {_number(final.rho)} m, "
         f"θ {_number(final.theta_error)} rad",

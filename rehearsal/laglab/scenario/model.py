@@ -128,9 +128,13 @@ class Scenario(Table):
     @property
     def gist(self) -> str:
         """Law, unless it is the polar one, filter, delays and noise, in a few words."""
-        noise = "on" if self.noise else "off"
         law = "" if self.law.kind == "polar" else f"{self.law.kind}, "
-        return f"{law}{self.estimator.kind}, n = {self.link.n}, m = {self.link.m}, noise {noise}"
+        return f"{law}{self.gist_with(self.estimator.kind)}"
+
+    def gist_with(self, estimator: str) -> str:
+        """The same, whatever the law, of whoever estimates."""
+        noise = "on" if self.noise else "off"
+        return f"{estimator}, n = {self.link.n}, m = {self.link.m}, noise {noise}"
 
     def first_estimate(self) -> NDArray[np.float64]:
         """x̂_0, shape (3,): the true start, a pose, or drawn from N(start, P_0) by the seed."""

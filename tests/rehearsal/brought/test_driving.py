@@ -22,6 +22,7 @@ Laglab = Callable[..., "subprocess.CompletedProcess[str]"]
 Ended = Callable[..., tuple[int, str, str]]
 Refused = Callable[..., str]
 
+SIDES = "robot", "station"
 UNGUARDED = ("--set", "estimator.guard=false")
 LAB = ("run", "lab", "--duration", "2", *UNGUARDED)
 INLINE = ("--transport", "inline")
@@ -100,6 +101,9 @@ def test_two_machines_of_which_only_the_station_has_it(
     for side in (station, gateway):
         _, errors = side.communicate(timeout=60)
         assert side.returncode == 0, errors
+    robot, ours = (json.loads((tmp_path / f"{each}/summary.json").read_text()) for each in SIDES)
+    assert (robot["estimator"], robot["law"]) == ("the station's filter", "unknown")
+    assert (ours["estimator"], ours["law"]) == ("mine:Wide", "polar")
 
 
 @pytest.mark.slow

@@ -141,9 +141,7 @@ class _Robot:
         self._body.set_xy(self._outline(self._told.pose[row]))
         self._guess.set_xy(self._outline(self._told.estimate[row]))
         unit = self._told.clock.unit
-        self.axes.set_title(
-            f"{self._name}: {self._told.scenario.estimator.kind}, {time:.1f} {unit}"
-        )
+        self.axes.set_title(f"{self._name}: {self._told.estimator}, {time:.1f} {unit}")
 
     def _outline(self, pose: NDArray[np.float64]) -> NDArray[np.float64]:
         low, high = self.axes.get_xlim()

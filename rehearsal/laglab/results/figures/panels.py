@@ -116,7 +116,7 @@ def symmetric(axes: Axes, errors: list[Array], two_sigma: Array) -> None:
 
 def draw_shadows(axes: Axes, shown: Shown, i: int) -> None:
     """The errors of the estimator in the loop and of those that shadowed it."""
-    names = [shown.scenario.estimator.kind, *shown.scenario.estimator.compare]
+    names = [shown.estimator, *shown.scenario.estimator.compare]
     errors = [shown.error, *map(shown.shadow_error, names[1:])]
     for number, (name, error) in enumerate(zip(names, errors, strict=True)):
         marked(axes, shown.time, error[:, i], line(number), number, name)

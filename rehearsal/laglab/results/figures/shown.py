@@ -57,6 +57,8 @@ class Shown(NamedTuple):
     """Time in the clock's unit; all else in SI units, as much of it as can be seen."""
 
     scenario: Scenario
+    estimator: str
+    """What is in the loop is called."""
     clock: Clock
     trace: Trace
     time: Array
@@ -135,6 +137,7 @@ def shown(run: Run) -> Shown:
     )
     return Shown(
         run.scenario,
+        run.summary.estimator,
         unit,
         trace,
         trace["time"] / unit.seconds,

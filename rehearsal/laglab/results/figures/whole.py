@@ -18,7 +18,6 @@ from laglab.results.figures.plane import draw_path
 from laglab.results.figures.shown import Shown, shown
 from laglab.results.figures.strip import draw_delays
 from laglab.results.figures.style import INCHES, Width, legend, printed, sheet
-from laglab.scenario import Scenario
 from laglab_gateway import DIRECTIONS
 
 if TYPE_CHECKING:
@@ -38,9 +37,12 @@ LANE = 0.1
 """[inch] What each cause of losses adds."""
 
 
-def title(scenario: Scenario) -> str:
+def title(run: Run) -> str:
     """The scenario in a line: name, filter, delays and noise."""
-    return f"{scenario.name}: {scenario.gist}"
+    scenario, summary = run.scenario, run.summary
+    is_ours = summary.estimator == scenario.estimator.kind
+    gist = scenario.gist if is_ours else scenario.gist_with(summary.estimator)
+    return f"{scenario.name}: {gist}"
 
 
 def draw_run(run: Run, width: Width = "two") -> Figure:
@@ -61,7 +63,7 @@ def draw_run(run: Run, width: Width = "two") -> Figure:
             axes.set_label(name)
             _draw(axes, told, name, bottom=not _continues(rows, name))
         figure.align_ylabels()
-        figure.suptitle(title(run.scenario))
+        figure.suptitle(title(run))
     return figure
 
 

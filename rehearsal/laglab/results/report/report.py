@@ -35,7 +35,7 @@ def _html(runs: Sequence[Run], most: int) -> str:
     names = labels(runs)
     panels = [_panel(run, name, most) for run, name in zip(runs, names, strict=True)]
     page = Page(
-        title=" and ".join(names) if len(runs) > 1 else title(runs[0].scenario),
+        title=" and ".join(names) if len(runs) > 1 else title(runs[0]),
         scripts=[text_of(HERE, "player.js")],
         rows=_compared([run.summary for run in runs]),
         duration=max(float(panel.tables.ticks["time"][-1]) for panel in panels),
