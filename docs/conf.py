@@ -16,6 +16,7 @@ exclude_patterns = [".*"]
 include_patterns = ["docs/**.md", "*.md", "*/README.md", "examples/*/README.md"]
 html_theme = "furo"
 html_title = f"laglab {release}"
+html_extra_path = ["site"]  # who opens the folder is led to the first page
 html_copy_source = html_show_sourcelink = False
 
 myst_heading_anchors = 4

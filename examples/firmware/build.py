@@ -6,7 +6,7 @@ CFLAGS in the environment are added to our own.
 import os
 import shlex
 import subprocess
-import sys
+from argparse import ArgumentParser
 from pathlib import Path
 
 from laglab_fmu import c_compiler
@@ -28,4 +28,6 @@ def build(folder: Path) -> Path:
 
 
 if __name__ == "__main__":
-    print(build(Path(sys.argv[1]) if sys.argv[1:] else HERE / "build"))
+    parser = ArgumentParser(description="Build the firmware for this computer.")
+    parser.add_argument("folder", nargs="?", type=Path, default=HERE / "build")
+    print(build(parser.parse_args().folder))

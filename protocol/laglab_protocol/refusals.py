@@ -7,8 +7,8 @@ from laglab_protocol.listener import Listener
 
 PERIOD = 1.0
 """[s] So often we look."""
-ENOUGH = 5
-"""So many frames: a single one may have been overtaken on its way."""
+OVERTAKEN = 5
+"""So many frames that came out of order are not yet replayed."""
 
 MENDED = {
     Refusal.UNSIGNED: "not signed: give the sender the same {key}",
@@ -39,7 +39,9 @@ class Refusals:
         for listener in listeners:
             for reason, count in listener.refused.items():
                 told = listener.link.name, reason
-                if count >= ENOUGH and reason in MENDED and told not in self._told:
+                enough = OVERTAKEN if reason is Refusal.REPLAYED else 1
+                if count >= enough and reason in MENDED and told not in self._told:
                     self._told.add(told)
                     mended = MENDED[reason].format(key=self._option)
-                    yield f"{listener.link.name}: {count} frames refused: {mended}"
+                    frames = "1 frame" if count == 1 else f"{count} frames"
+                    yield f"{listener.link.name}: {frames} refused: {mended}"

@@ -1,9 +1,11 @@
 """Which laglab this is."""
 
 import hashlib
+import platform
 from collections.abc import Iterator
+from contextlib import suppress
 from functools import cache
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from zipfile import ZipFile
@@ -23,6 +25,16 @@ PACKAGES = (
 def laglab_version() -> str:
     """As installed; looked up once, for each look-up leaves something in memory."""
     return version("laglab")
+
+
+@cache
+def versions() -> dict[str, str]:
+    """Of Python, and of what a run computes with, as far as it is installed."""
+    found = {"Python": platform.python_version()}
+    for name in ("numpy", "FMPy"):
+        with suppress(PackageNotFoundError):
+            found[name] = version(name)
+    return found
 
 
 @cache

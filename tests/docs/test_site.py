@@ -24,6 +24,8 @@ def test_the_site_is_built_without_a_warning(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     for page in ROOT.glob("docs/**/*.md"):
         assert (tmp_path / "site" / page.relative_to(ROOT)).with_suffix(".html").exists()
+    front = (tmp_path / "site" / "index.html").read_text("utf-8")
+    assert 'url=docs/index.html"' in front
     api = (tmp_path / "site" / "docs" / "reference" / "python.html").read_text("utf-8")
     assert 'id="laglab.run"' in api
     assert 'id="laglab_control.DelayedEkf"' in api

@@ -5,7 +5,7 @@ from typing import Any
 
 from laglab_control.errors import PluginError, PluginFailedError, StampError
 from laglab_control.plugins.finding import Maker
-from laglab_control.plugins.wording import one_line
+from laglab_control.plugins.wording import failure, one_line
 
 
 def made(name: str, maker: Maker, *told: object, **options: object) -> object:
@@ -15,7 +15,7 @@ def made(name: str, maker: Maker, *told: object, **options: object) -> object:
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # it is a stranger's
-        raise PluginError(f"{name} cannot be made: {one_line(error)}") from error
+        raise PluginError(f"{name} cannot be made: {failure(error)}") from error
 
 
 def refuse_misfit(name: str, brought: object, method: str, *parameters: str) -> None:
@@ -42,7 +42,7 @@ def called(name: str, brought: object, method: str, *told: object) -> Any:
     except (StampError, KeyboardInterrupt):
         raise  # as an estimator must; and nobody's fault
     except BaseException as error:  # SystemExit too: no stranger is to end the whole program
-        raise PluginFailedError(f"{name}.{method}: {one_line(error)}") from error
+        raise PluginFailedError(f"{name}.{method}: {failure(error)}") from error
 
 
 class at_tick:  # a context manager of a function takes four times as long, at every tick

@@ -1,5 +1,8 @@
 """What strangers' things say of themselves, in a line."""
 
+import traceback
+from pathlib import Path
+
 SHOWN, LONGEST = 60, 400
 """[characters] At most so much of a wrong answer, and of an exception's text, is shown."""
 
@@ -12,6 +15,17 @@ def one_line(error: BaseException) -> str:
         text = ""
     kind = type(error).__name__
     return _short(f"{kind}: {text}" if text else kind, LONGEST)
+
+
+def failure(error: BaseException) -> str:
+    """The same of what was raised in a stranger's code, and where in the file that was called."""
+    frames = traceback.walk_tb(error.__traceback__)
+    theirs = [(frame.f_code.co_filename, line) for frame, line in frames][1:]
+    if not theirs:
+        return one_line(error)
+    file, _ = theirs[0]
+    line = [line for name, line in theirs if name == file][-1]
+    return f"{one_line(error)} ({Path(file).name}, line {line})"
 
 
 def shown(answer: object) -> str:

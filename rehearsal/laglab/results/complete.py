@@ -29,7 +29,7 @@ from laglab.results.station import decoded
 from laglab.results.summary import Errors, Final, Following, Side, Summary, write_summary
 from laglab.runs.ending import Ending
 from laglab.scenario import Scenario
-from laglab.version import laglab_version
+from laglab.version import laglab_version, versions
 from laglab_gateway import (
     ARRIVALS_FILE,
     CLAIMS_FILE,
@@ -169,6 +169,7 @@ def summarise(
     in_loop = {estimator: numbers.rms_error} if compared else {}
     return Summary(
         laglab=laglab_version(),
+        versions=versions(),
         scenario=scenario.name,
         side=way.side,
         transport=way.transport,

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from laglab.errors import NoRunError, ResultsError
+from laglab.extras import FRAMES, require
 from laglab.results.columns import (
     Columns,
     at_ticks,
@@ -156,7 +157,9 @@ class Run:
         return int(next(self.pieces())["tick"][0])
 
     def to_pandas(self) -> pandas.DataFrame:
-        """The trace, a row a tick, indexed by `tick`. Needs pandas. Raises as `trace`."""
+        """The trace, a row a tick, indexed by `tick`. Raises MissingExtraError without pandas, and
+        as `trace`."""
+        require(FRAMES)
         import pandas
 
         frame = pandas.DataFrame(dict(self.trace))

@@ -55,6 +55,8 @@ class Summary(Struct, frozen=True, kw_only=True):
     schema_version: int = SCHEMA_VERSION
     laglab: str
     """The version that made the run."""
+    versions: dict[str, str] = {}
+    """Of Python, numpy and FMPy, where it was made."""
     scenario: str
     side: Side
     """Who kept the record: both sides together, or one alone."""

@@ -84,6 +84,7 @@ def test_inline_it_is_no_different(
 ) -> None:
     code, _, stderr = ended(*LAB, kind, f"mine:{name}", *INLINE)
     failed_as_it_must(brought, code, stderr, said)
+    assert ("(mine.py, line " in stderr) == (name != "NanLaw"), "where it was raised, if it was"
 
 
 @pytest.mark.usefixtures("brought")

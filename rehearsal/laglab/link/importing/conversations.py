@@ -12,7 +12,10 @@ from laglab.link.importing.how import How, by_halves, halves
 from laglab.link.measured import MeasuredLink
 from laglab_protocol import Command, Frame, Tick, TlogError, decode, read_tlog
 
-COARSE = "Its times are whole ticks: nothing finer is known, and within a tick is 0."
+COARSE = (
+    "Its times are whole ticks: nothing finer is known, and within a tick is 0. Of a simulated "
+    "link it holds nothing: that is in the run's link.csv."
+)
 
 
 class Heard(NamedTuple):

@@ -13,7 +13,7 @@ from laglab.results.figures.panels import COMPONENTS, SPEEDS, around, marked
 from laglab.results.figures.plane import draw_headings, fit, mark_ends
 from laglab.results.figures.shown import Clock, Shown, clock, shown
 from laglab.results.figures.strip import configured
-from laglab.results.figures.style import INCHES, Width, legend, line, printed, sheet
+from laglab.results.figures.style import INCHES, MOST_HIGH, Width, legend, line, printed, sheet
 from laglab.scenario import Scenario
 from laglab_gateway import DIRECTIONS
 
@@ -44,7 +44,8 @@ def draw_runs(runs: Sequence[Run], width: Width = "two") -> Figure:
     heights = [HEIGHTS.get(row[0], USUAL) for row in rows]
     with printed():
         heading = _title([run.scenario for run in runs], LETTERS[width])
-        figure = sheet(INCHES[width], sum(heights) + 0.25 + 0.12 * heading.count("\n"))
+        high = sum(heights) + 0.25 + 0.12 * heading.count("\n")
+        figure = sheet(INCHES[width], min(high, MOST_HIGH))
         panels = figure.subplot_mosaic([list(row) for row in rows], height_ratios=heights)
         for name, axes in panels.items():
             axes.set_label(name)
@@ -68,12 +69,17 @@ def _title(scenarios: Sequence[Scenario], letters: int) -> str:
     """Key by key what each has, in the order of the runs."""
     from laglab.scenario.differences import differing  # it spells values as a file does
 
-    told = [f"{key}: {' | '.join(values)}" for key, values in differing(scenarios).items()]
+    keys = differing(scenarios)
+    kinds = [key for key in keys if key.endswith(".kind")]
+    told = [f"{key}: {' | '.join(keys[key])}" for key in dict.fromkeys([*kinds, *keys])]
     if len(scenarios) == 1:
         told = [f"{scenarios[0].name}: {scenarios[0].gist}"]
-    lines = textwrap.wrap("; ".join(told) or "the same scenario", letters)
-    if len(lines) > MOST_LINES:
-        lines = [*lines[: MOST_LINES - 1], f"... ({len(told)} keys differ)"]
+    lines: list[str] = []
+    for kept in range(len(told), -1, -1):
+        left = [f"... ({len(told)} keys differ)"] if kept < len(told) else []
+        lines = textwrap.wrap("; ".join([*told[:kept], *left]) or "the same scenario", letters)
+        if len(lines) <= MOST_LINES:
+            break
     return "\n".join(lines)
 
 

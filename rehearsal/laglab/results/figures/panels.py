@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 COMPONENTS = ("x [m]", "y [m]", "θ [rad]")
-ERRORS = ("x error [m]", "y error [m]", "θ error [rad]")
+ERRORS = ("x error\n[m]", "y error\n[m]", "θ error\n[rad]")
 LESS_MEASURED = ("x less\nmeasured [m]", "y less\nmeasured [m]", "θ less\nmeasured [rad]")
 """The same where the true pose is not known."""
 SPEEDS = {"v": "v [m/s]", "omega": "ω [rad/s]"}
@@ -41,6 +41,15 @@ def draw_component(axes: Axes, shown: Shown, i: int) -> None:
     axes.plot(shown.time, wanted, color=GREY, linestyle=":", linewidth=0.8, label=name)
     around(axes, shown.pose[:, i], float(wanted.min()), float(wanted.max()))
     axes.set_ylabel(COMPONENTS[i])
+
+
+def draw_distance(axes: Axes, shown: Shown) -> None:
+    """How far the robot is from where its path wanted it."""
+    off = shown.pose - shown.wanted
+    distance = np.hypot(off[:, 0], off[:, 1])
+    axes.plot(shown.time, distance, color=BLACK, linewidth=0.9)
+    axes.set_ylabel("to the path\n[m]")
+    around(axes, distance, 0.0)
 
 
 def draw_measured(axes: Axes, x: ArrayLike, y: ArrayLike) -> None:

@@ -91,7 +91,7 @@ def mark_ends(axes: Axes, poses: Array, target: Target) -> None:
         axes.plot(*poses[0, :2], "o", color=BLACK, markerfacecolor="white", label="start", zorder=4)
     if target.path is not None:
         way = target.outline().T
-        axes.plot(*way, color=GREEN, linestyle=":", linewidth=1.4, label="path", zorder=1.8)
+        axes.plot(*way, color=GREEN, linewidth=3.5, alpha=0.35, label="path", zorder=1.4)
         return
     axes.plot(
         *target.goal[:2],

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 Width = Literal["one", "two"]
 """Of how many columns of a journal's page a figure takes the width."""
 INCHES: dict[Width, float] = {"one": 3.3, "two": 7.0}
+MOST_HIGH = 9.0
+"""[inch] What stands on a page; rows that would be higher together are all made lower."""
 
 BLACK, GREY, PALE = "#000000", "#6e6e6e", "#d0d0d0"
 BLUE, ORANGE, GREEN, RED = "#0072B2", "#E69F00", "#009E73", "#D55E00"

@@ -10,6 +10,7 @@ from laglab.results.figures.marks import time_axis
 from laglab.results.figures.panels import (
     SPEEDS,
     draw_component,
+    draw_distance,
     draw_error,
     draw_shadows,
     draw_speed,
@@ -17,7 +18,7 @@ from laglab.results.figures.panels import (
 from laglab.results.figures.plane import draw_path
 from laglab.results.figures.shown import Shown, shown
 from laglab.results.figures.strip import draw_delays
-from laglab.results.figures.style import INCHES, Width, legend, printed, sheet
+from laglab.results.figures.style import INCHES, MOST_HIGH, Width, legend, printed, sheet
 from laglab_gateway import DIRECTIONS
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ def draw_run(run: Run, width: Width = "two") -> Figure:
     rows = _one(told) if width == "one" else _two(told)
     heights = [_height(told, row[0]) for row in rows]
     with printed():
-        figure = sheet(INCHES[width], sum(heights) + TITLE)
+        figure = sheet(INCHES[width], min(sum(heights) + TITLE, MOST_HIGH))
         panels = figure.subplot_mosaic([list(row) for row in rows], height_ratios=heights)
         for name, axes in panels.items():
             axes.set_label(name)
@@ -82,6 +83,7 @@ def _two(told: Shown) -> list[Row]:
         ("path",) * 3 + (y,) * 3,
         third + (theta,) * 3,
         *([sum(shadows, ())] if shadows else []),
+        *((name,) * 6 for name in _distance(told)),
         ("v",) * 3 + ("omega",) * 3,
         *((direction,) * 6 for direction in DIRECTIONS),
     ]
@@ -89,7 +91,7 @@ def _two(told: Shown) -> list[Row]:
 
 def _one(told: Shown) -> list[Row]:
     """In a column: one below the other."""
-    below = (*_components(told), *_shadows(told), "v", "omega", *DIRECTIONS)
+    below = (*_components(told), *_shadows(told), *_distance(told), "v", "omega", *DIRECTIONS)
     return [("path",), ("path",), *((name,) for name in below)]
 
 
@@ -99,6 +101,11 @@ def _components(told: Shown) -> Sequence[str]:
 
 def _shadows(told: Shown) -> Sequence[str]:
     return ("shadow x", "shadow y", "shadow θ") if told.scenario.estimator.compare else ()
+
+
+def _distance(told: Shown) -> Sequence[str]:
+    """Of a robot that follows a path."""
+    return () if told.target.path is None else ("distance",)
 
 
 def _continues(rows: Sequence[Row], name: str) -> bool:
@@ -120,6 +127,8 @@ def _draw(axes: Axes, told: Shown, name: str, bottom: bool) -> None:
         case "path":
             draw_path(axes, told)
             return
+        case "distance":
+            draw_distance(axes, told)
         case "v" | "omega":
             draw_speed(axes, told, name)
         case "error":
