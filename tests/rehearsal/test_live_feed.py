@@ -12,6 +12,7 @@ from laglab.live.messages import Given, Line, LiveOrder, Rows, packed, unpacked
 from laglab.live.page import page_html
 from laglab.live.server import _unless_crowded
 from laglab.scenario import load
+from laglab_gateway import ArrivalRow, TraceRow
 
 
 def test_a_fast_station_s_frames_all_have_room() -> None:
@@ -31,6 +32,33 @@ def test_a_fast_station_s_frames_all_have_room() -> None:
             came += rows.frames
         loop.close()
     assert came == frames
+
+
+def test_of_many_ticks_both_directions_are_told_and_all_that_was_refused() -> None:
+    """Each tick brings one of each, in turn."""
+    arrivals = [
+        ArrivalRow(
+            direction, k, k, 0.01 * k, "stale" if direction == "command" and not k % 9 else ""
+        )
+        for k in range(150)
+        for direction in ("measurement", "command")
+    ]
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as page:
+        page.bind(("127.0.0.1", 0))
+        page.settimeout(5.0)
+        loop = Feed(Line(page.getsockname()[1], "secret"), Controls(lambda: None, lambda: False))
+        for k in range(150):
+            loop.row(TraceRow(k, 0.01 * k, *(None,) * 13))
+        loop.arrivals(arrivals)
+        loop.flush()
+        rows = unpacked(page.recv(1 << 16), "secret")
+        loop.close()
+    assert isinstance(rows, Rows)
+    told = [each.arrived for each in rows.arrivals if each.direction == "measurement"]
+    followed = {each.arrived for each in rows.arrivals if each.direction == "command"}
+    assert told == [each.tick for each in rows.trace]
+    assert followed >= set(told)
+    assert [each for each in rows.arrivals if each.refused] == [e for e in arrivals if e.refused]
 
 
 def test_a_run_that_is_ended_from_the_page_is_ended_once(monkeypatch: pytest.MonkeyPatch) -> None:

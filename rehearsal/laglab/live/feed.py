@@ -100,7 +100,8 @@ class Feed(Recorder):
         rows.trace = _last(rows.trace[::every])
         kept = {row.tick for row in rows.trace}
         rows.claims = [each for each in rows.claims if each.tick in kept]
-        rows.arrivals, rows.timing = _last(rows.arrivals[::every]), _last(rows.timing[::every])
+        seen = [each for each in rows.arrivals if each.arrived in kept or each.refused]
+        rows.arrivals, rows.timing = _last(seen), _last(rows.timing[::every])
         rows.link = _last([row for row in rows.link if row.fate != FateKind.DELIVERED])
         rows.stopped = self._controls.stopped()
         frames, rows.frames = rows.frames, rows.frames[:MOST_FRAMES]
