@@ -9,7 +9,7 @@ import pytest
 from laglab.live import feed
 from laglab.live.feed import Controls, Feed
 from laglab.live.messages import Given, Line, LiveOrder, Rows, packed, unpacked
-from laglab.live.page import page_html
+from laglab.live.page import FOR_EVER, announced, page_html
 from laglab.live.server import _unless_crowded
 from laglab.scenario import load
 from laglab_gateway import ArrivalRow, TraceRow
@@ -102,3 +102,14 @@ def test_of_a_real_robot_the_page_knows_no_true_pose() -> None:
     real = msgspec.structs.replace(order, measured=True)
     assert "estimate less robot" in page_html(scenario, order, controls=False)
     assert "estimate less measurement" in page_html(scenario, real, controls=False)
+
+
+def test_outages_that_are_announced_are_hatched_as_in_the_report() -> None:
+    for name, hatched in (("lab-radio", True), ("lab", False)):
+        scenario = load(name)
+        order = LiveOrder(scenario.to_toml(), "127.0.0.1", 0, "t", "s", False, False, "simulated")
+        assert ('"hatch_pattern":' in page_html(scenario, order, controls=False)) == hatched
+    endless = load(
+        "lab", {"duration": float("inf"), "link.event": [{"at": 2.0, "link": {"loss": 1.0}}]}
+    )
+    assert announced(endless) == [(2.0, FOR_EVER)]
