@@ -31,9 +31,13 @@ class Refusals:
         self._told: set[tuple[str, Refusal]] = set()
         self._next = now + PERIOD
 
+    def are_due(self, now: float) -> bool:
+        """Whether it is time to look."""
+        return now >= self._next
+
     def news(self, listeners: Iterable[Listener], now: float) -> Iterator[str]:
         """What is to be told since the last time, in a line each, if it is time to look."""
-        if now < self._next:
+        if not self.are_due(now):
             return
         self._next = now + PERIOD
         for listener in listeners:

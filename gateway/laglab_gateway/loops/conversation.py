@@ -190,8 +190,10 @@ class Conversation:
 
     def _tell_of_keys(self) -> None:
         """Now and then: whose frames we may not take, and how to mend that."""
-        for text in self._refusals.news([self._listener, *self._watch.listeners], self.now()):
-            self._around.warn(text)
+        now = self.now()
+        if self._refusals.are_due(now):  # else it is not worth to name them all
+            for text in self._refusals.news([self._listener, *self._watch.listeners], now):
+                self._around.warn(text)
 
     def _look_around(self) -> None:
         """Say what was announced, and look after those who watch."""
