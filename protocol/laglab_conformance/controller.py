@@ -42,6 +42,9 @@ class ControllerSession(Session):
         if self.wait_for(Heartbeat, self.waits.appear) is None:
             raise NoReactionError("no HEARTBEAT came")
 
+    def leave(self) -> None:
+        self.say_end(self.tick)
+
     def stimulus(self) -> Message:
         return Tick(self.tick, 0)
 

@@ -33,24 +33,26 @@ def carry_out(
 ) -> tuple[Result, ...]:
     """Every item in its turn; one that fails does not keep the others from being tried.
 
-    Only where the first fails, that the peer is there at all, are the others not tried. `progress`
-    is told what is tried.
+    Only where the first fails, that the peer is there at all, are the others not tried; nor are
+    they after Ctrl-C, when the peer is told that its run is over. `progress` is told what is tried.
     """
+    results: list[Result] = []
+    waiting = list(items)
+    try:
+        while waiting:
+            progress(f"{waiting[0].group}: {waiting[0].name}")
+            results.append(_result(waiting[0], session))
+            del waiting[0]
+            if results[0].mark is Mark.FAILED:
+                no_talk = "not tried: without the first there is no talk"
+                return results[0], *(_left_out(item, Mark.SKIPPED, no_talk) for item in waiting)
+    except KeyboardInterrupt:
+        session.leave()
+    return *results, *(_left_out(item, Mark.INTERRUPTED, "") for item in waiting)
 
-    def tried(item: Item[AnySession]) -> Result:
-        progress(f"{item.group}: {item.name}")
-        return _result(item, session)
 
-    first, *others = items
-    found = tried(first)
-    if found.mark is Mark.FAILED:
-        return found, *(_not_tried(item) for item in others)
-    return found, *map(tried, others)
-
-
-def _not_tried(item: Item[AnySession]) -> Result:
-    reason = "not tried: without the first there is no talk"
-    return Result(item.group, item.name, item.mandatory, Mark.SKIPPED, reason, 0.0)
+def _left_out(item: Item[AnySession], mark: Mark, why: str) -> Result:
+    return Result(item.group, item.name, item.mandatory, mark, why, 0.0)
 
 
 def _result(item: Item[AnySession], session: AnySession) -> Result:

@@ -11,6 +11,8 @@ class Mark(Enum):
     PASSED = "passed"
     FAILED = "FAILED"
     SKIPPED = "skipped"
+    INTERRUPTED = "interrupted"
+    """Somebody ended it all before it was through."""
 
 
 class Result(NamedTuple):
@@ -36,6 +38,16 @@ class Report(NamedTuple):
         return not any(each.mandatory and each.mark is Mark.FAILED for each in self.results)
 
     @property
+    def tried(self) -> bool:
+        """Whether anything was."""
+        return any(each.mark in (Mark.PASSED, Mark.FAILED) for each in self.results)
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether nobody ended it before its time."""
+        return not any(each.mark is Mark.INTERRUPTED for each in self.results)
+
+    @property
     def failed(self) -> list[str]:
         """The names of the items that were not passed."""
         return [each.name for each in self.results if each.mark is Mark.FAILED]
@@ -50,6 +62,7 @@ class Report(NamedTuple):
             for each in self.results
         ]
         verdict = "conforms" if self.conforms else "does not conform"
+        verdict = verdict if self.is_whole else "was not tested to the end"
         return "\n".join([*lines, f"the {self.side} {verdict}"])
 
     def junit(self) -> str:

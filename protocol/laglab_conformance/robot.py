@@ -72,6 +72,9 @@ class RobotSession(Session):
                 return
         raise NoReactionError("no LAGLAB_TICK, though a station sent heartbeats")
 
+    def leave(self) -> None:
+        self.say_end(self.tick)
+
     def stimulus(self) -> Message:
         return self.command(self.tick)
 

@@ -3,6 +3,7 @@
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
@@ -10,6 +11,8 @@ from laglab_conformance.forge import Forged
 from laglab_protocol import (
     End,
     Endpoint,
+    EndpointError,
+    EndReason,
     Frame,
     Listener,
     Message,
@@ -89,6 +92,16 @@ class Session(ABC):
     @abstractmethod
     def go_on(self) -> None:
         """After a reaction: the next stimulus is another one."""
+
+    @abstractmethod
+    def leave(self) -> None:
+        """Before its time: the peer is told that its run is over."""
+
+    def say_end(self, tick: int) -> None:
+        """The frame may be lost, so it comes thrice."""
+        with suppress(EndpointError):  # a link that is broken takes no last words
+            for _ in range(3):
+                self.send(End(tick, EndReason.INTERRUPTED))
 
     def forged(self, message: Message | None = None) -> Forged:
         """The usual frame of a message, by default the stimulus, with the next number."""

@@ -1,6 +1,7 @@
 """The conformance kit passes our own robot, over UDP and over a serial line, signed and not."""
 
 import threading
+import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
@@ -10,7 +11,7 @@ from typing import Any
 import pytest
 
 from laglab.runs.plant import FmuPlant
-from laglab_conformance import Pace, conform
+from laglab_conformance import Mark, Pace, conform
 from laglab_conformance import Waits as Quick
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
@@ -99,3 +100,26 @@ def test_a_run_that_ends_too_soon_is_told_from_a_robot_that_is_deaf(stack: ExitS
 
     assert not report.conforms
     assert "its run had ended at tick 3: let it run longer" in report.table()
+
+
+def test_a_kit_that_is_interrupted_tells_what_it_saw_and_lets_the_robot_go(
+    stack: ExitStack,
+) -> None:
+    """The robot stands still at once, and not after its silence timeout."""
+    tried: list[str] = []
+
+    def interrupted(text: str) -> None:
+        tried.append(text)
+        if len(tried) == 6:  # the first text is where the peer is
+            raise KeyboardInterrupt
+
+    endpoint = stack.enter_context(open_endpoint("udpin://:0"))
+    with served(endpoint, None, "lockstep") as url:
+        report = conform(url, "robot", None, progress=interrupted)
+        told = time.monotonic()
+    assert time.monotonic() - told < 2.0, "it would have waited for 3 s"
+    marks = [each.mark for each in report.results]
+    assert marks[:4] == [Mark.PASSED] * 4
+    assert set(marks[4:]) == {Mark.INTERRUPTED}
+    assert not report.is_whole
+    assert report.table().endswith("the robot was not tested to the end")

@@ -138,7 +138,10 @@ def conform(
     with status() as tell:
         how = pace or "lockstep"
         report = test_conformance(url, side, key, waits, how, scope, _announcing(tell))
-    print(report.table())
+    if report.is_whole or report.tried:
+        print(report.table())
+    if not report.is_whole:
+        raise KeyboardInterrupt
     if junit:
         write_whole(junit, report.junit())
     raise typer.Exit(0 if report.conforms else 1)
