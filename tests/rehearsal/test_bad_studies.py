@@ -66,6 +66,8 @@ def test_what_is_wrong_in_its_file_is_one_line(text: str, said: str, refused: Re
             "3150000000 runs (315 points of the grid, 10000000 seed",
         ),
         (["gains", "--limit", "3149"], "say --limit 3150"),
+        (["gains", "--scheduler", ""], "--scheduler : must be `local` or tcp://HOST:PORT"),
+        (["gains", "--scheduler", "tcp://127.0.0.1:9", "--workers", "2"], "says how many it has"),
         (["gains", "--out", "/dev/null"], "--out /dev/null: that is a file"),
         (["gains", "--out", "/proc/nowhere"], "--out /proc/nowhere: cannot write there"),
     ],

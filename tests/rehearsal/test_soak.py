@@ -1,6 +1,7 @@
 """A few turns of a soak, chosen so that they are short; and that each of its checks can fail."""
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -137,6 +138,10 @@ def test_all_is_as_it_should_be() -> None:
 @pytest.mark.parametrize("name", EXPECTATIONS)
 def test_each_expectation_can_fail(name: str) -> None:
     assert list(failures(WRONG[name])) == [name]
+
+
+def test_a_turn_alone_has_no_minutes(refused: Callable[..., str]) -> None:
+    assert "leave --minutes out" in refused("soak", "--turn", "3", "--minutes", "1")
 
 
 def test_what_is_in_a_folder_is_no_soaks_to_take_away(

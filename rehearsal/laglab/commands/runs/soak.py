@@ -15,13 +15,19 @@ from laglab.tables import terminal
 from laglab_protocol import require_terminals
 
 FAILED = 1
+USUAL_MINUTES = 30.0
 MOST_MINUTES = 60.0 * 24 * 365
 
 
 def soak(
     minutes: Annotated[
-        float, typer.Option(min=0.01, max=MOST_MINUTES, help="How long; the last turn is finished.")
-    ] = 30.0,
+        float | None,
+        typer.Option(
+            min=0.01,
+            max=MOST_MINUTES,
+            help=f"How long, {USUAL_MINUTES:g} if not told; the last turn is finished.",
+        ),
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, max=2**31 - 1, help="Of all that is drawn.")] = 1,
     turn: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="Play the turn of this number alone.")
@@ -37,6 +43,8 @@ def soak(
     codes, files, memory, descriptors and processes are checked in every one.
     """
     require(REHEARSING)
+    if turn is not None and minutes is not None:
+        raise typer.BadParameter("--turn plays one turn to its end: leave --minutes out")
     require_terminals("soak")
     require_processes()
 
@@ -44,6 +52,7 @@ def soak(
         for line in lines:
             print(line, flush=True)
 
+    minutes = USUAL_MINUTES if minutes is None else minutes
     command = f"laglab soak --minutes {minutes:g} --seed {seed}"
     place = _place(out, turn)
     going = Soak(command if turn is None else repeated(seed, turn), seed, place, tell)

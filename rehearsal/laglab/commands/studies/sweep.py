@@ -60,6 +60,7 @@ def sweep(
     from laglab.studies.sweep.sweeping import work_off
     from laglab.studies.sweep.work import checked_work
 
+    executor = _workers(scheduler, workers)
     chosen = load_study(study, dict(map(assignment, told or [])), seeds)
     place = out or Path("studies") / chosen.name
     work = checked_work(chosen, None if force else Folder(place), limit)
@@ -67,7 +68,7 @@ def sweep(
     for line in strangers_told(chosen, folder):
         say(line)
     try:
-        work_off(chosen, folder, _workers(scheduler, workers), work, again=force)
+        work_off(chosen, folder, executor, work, again=force)
     except KeyboardInterrupt:
         kept = sum(len(cell.seeds) for cell in chosen.cells() if folder.has(cell))
         say(f"{kept} of {chosen.runs} runs are kept: the same command goes on from there")
@@ -82,10 +83,12 @@ def sweep(
 
 
 def _workers(scheduler: str | None, workers: int) -> "AbstractContextManager[Executor]":
-    from laglab.studies.sweep.cluster import cluster
+    from laglab.studies.sweep.cluster import OURS, cluster
     from laglab.studies.workers import Processes
 
-    return cluster(scheduler, workers) if scheduler else Processes(workers)
+    if workers and scheduler not in (None, OURS):
+        raise typer.BadParameter("--workers: whoever runs the scheduler says how many it has")
+    return Processes(workers) if scheduler is None else cluster(scheduler, workers)
 
 
 def _list() -> None:
