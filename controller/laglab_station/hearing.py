@@ -101,6 +101,8 @@ def echoes(messages: Sequence[Measurement], first: int, tick: int) -> list[Echo]
 
 def recalled(messages: Sequence[protocol.Applied], first: int, tick: int) -> list[Applied]:
     """The inputs at ticks before the present one, as far as the robot recalls them."""
+    if not messages:
+        return []
     told = [
         (message.first + i - first, message.v[i], message.omega[i])
         for message in messages

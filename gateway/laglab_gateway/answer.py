@@ -54,6 +54,8 @@ class Answer:
 
     def _is_whole(self, command: Command) -> bool:
         """Whether all that was said before `command` is here."""
+        if not self._beside:
+            return len(self.estimates) >= command.estimates and not command.plan
         plans = [each for each in self._beside if isinstance(each, Plan)]
         said = len(self.estimates) + len(self._beside) - len(plans)
         its_own = sum(plan.tick == command.tick for plan in plans)

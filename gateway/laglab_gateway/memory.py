@@ -76,6 +76,8 @@ class Owed:
 
     def take(self) -> list[Applied]:
         """What goes with this tick."""
+        if not self._answers:
+            return []
         return [self._answers.pop(first) for first in list(islice(self._answers, APPLIED_A_TICK))]
 
     def forget(self) -> None:
