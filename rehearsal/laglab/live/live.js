@@ -9,6 +9,14 @@ const news = document.getElementById("news");
 const notices = document.getElementById("notices");
 let over = false;
 
+/** Of each cause a mark at no time, which the legend shows; they are there before any other. */
+let legend = null;
+
+function after(first, more) {
+  return Object.fromEntries(
+    Object.entries(more).map(([name, column]) => [name, [...first[name], ...column]]));
+}
+
 /** JSON has no NaN. */
 function numbers(cells) {
   const read = (name, cell) => (cell === null && NUMBERS.test(name) ? NaN : cell);
@@ -27,7 +35,7 @@ function noteDue(ticks, commands) {
 function take(tables, whole) {
   for (const [name, cells] of Object.entries(tables)) {
     const told = numbers(cells), held = source(name, 0);
-    if (whole) held.data = told;
+    if (whole) held.data = name === "marks" ? after(legend ??= held.data, told) : told;
     else if (Object.values(told)[0].length) held.stream(told, MOST_ROWS);
   }
   const ticks = source("ticks", 0).data;

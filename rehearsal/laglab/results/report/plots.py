@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
+from bokeh.model import Model
 from bokeh.models import (
     CDSView,
     DataRange1d,
@@ -21,7 +22,7 @@ from bokeh.plotting import figure
 from laglab.results.figures.style import BLUE, GREEN, ORANGE, RED, SKY
 from laglab.results.link_view import Span as Time
 from laglab.results.report.sources import Sources
-from laglab.results.report.tables import LANES
+from laglab.results.report.tables import LANES, marks
 from laglab.scenario import Scenario
 
 BLACK, GREY, PURPLE = "#222222", "#8c8c8c", "#9c4a86"
@@ -49,6 +50,11 @@ class Axes:
 
     time: DataRange1d = field(default_factory=lambda: DataRange1d(range_padding=0.01))
     of: dict[str, DataRange1d] = field(default_factory=dict)
+
+    def follow(self, curves: Sequence[Model]) -> None:
+        """Time reaches as far as these do, too, whatever else is marked."""
+        before = self.time.renderers
+        self.time.renderers = [*(before if isinstance(before, list) else ()), *curves]
 
     def values(self, kind: str) -> DataRange1d:
         """The axis of all plots of this kind."""
@@ -101,8 +107,10 @@ def time_plots(
     plots["marks"] = _mark_plot(sources, axes)
     if timed:
         plots["timing"] = _timing_plot(sources, axes)
+    curves = [each for plot in plots.values() for each in plot.renderers]
     for plot in plots.values():
         _mark_times(plot, sources, quiet)
+    axes.follow(curves)
     return plots
 
 
@@ -255,6 +263,8 @@ def _mark_plot(sources: Sources, axes: Axes) -> figure:
     lanes = FactorRange(factors=list(LANES))
     plot = _plot(axes, "lost, by cause; refused; stops; alarms", lanes)
     to_come, marked = not len(sources.ticks.data["time"]), set(sources.marks.data["what"])
+    if to_come:  # the legend draws what is there: one of each, at no time
+        sources.marks.data = dict(marks([np.nan] * len(CAUSES), LANES[0], list(CAUSES)))
     for cause, (marker, color) in CAUSES.items():
         view = CDSView(filter=GroupFilter(column_name="what", group=cause))
         plot.scatter(
