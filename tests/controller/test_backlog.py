@@ -84,11 +84,27 @@ def test_nothing_is_passed_over_where_nothing_waits(robot, station):
     assert station.warnings == ()
 
 
+def test_a_repeat_was_not_passed_over(robot, station):
+    heard(station, robot.says(1, 0))
+    answered = heard(station, robot.says(1, 0), robot.says(2, 1))
+    assert [message.tick for message in answered] == [1, 1, 2, 2]
+    assert station.warnings == ()
+
+
 def test_what_is_not_whole_is_not_used(robot, station):
     behind = heard(station, robot.says(1, 0, announced=2), robot.says(2, 1))
     other = make()
     heard(other, robot.says(0))
     assert behind == heard(other, robot.says(2, 1))
+
+
+def test_what_waited_of_a_robot_that_begins_again_is_not_the_new_ones(robot, station):
+    """It would be newer than all that the new one measures, which would then be passed over."""
+    heard(station, robot.says(200, 199))
+    assert heard(station, robot.says(250, 249), robot.says(251, announced=1)) == []
+    answers = [heard(station, robot.says(k, k)) for k in range(125)]  # from 19 on it is met anew
+    assert not any(isinstance(each, Estimate) for answer in answers[:110] for each in answer)
+    assert any(isinstance(each, Estimate) for answer in answers[110:] for each in answer)
 
 
 def test_a_robot_s_first_ticks_are_all_answered(robot):

@@ -5,7 +5,9 @@ import pytest
 
 from laglab_control import Controller, Echo, Measured, RobotModel, StationConfig
 from laglab_control.batch import BatchController, Pose
+from laglab_control.batch.impaired.guard import _length
 from laglab_control.flight import sent_for
+from laglab_control.guard.evidence import no_evidence, weighed
 
 N, M, TICKS = 4, 7, 120
 STARTS = np.array(((-3.0, -2.0), (-3.0, 1.0), (0.0, 1.5)))
@@ -44,3 +46,10 @@ def _answered(controller, control, z, k):
     s = k - M
     echo = Echo(s, sent_for(control.flight, s), s - N if s >= N else None)
     return controller.answer(control, [Measured(s, z[s])], [echo])
+
+
+def test_its_guards_look_for_a_drift_when_the_guard_of_one_does():
+    evidence = no_evidence()
+    for there in range(1, 2000):
+        evidence = weighed(evidence, (0.0, 0.0, 0.0), 0.0)
+        assert _length(np.array([there]))[0] == evidence.length

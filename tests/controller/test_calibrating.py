@@ -150,6 +150,13 @@ def test_its_model_is_linearised_as_it_is(parameters):
     np.testing.assert_array_equal(model.A(x, u)[3:], np.eye(len(x))[3:])
 
 
+@pytest.mark.parametrize(("v", "omega"), [(-0.5, 0.0), (0.5, 0.0), (0.0, 1.0), (0.0, -1.0)])
+def test_a_wheel_s_scale_wanders_as_far_as_it_turns_either_way(v, omega):
+    left, right = WheelScales(L, wander=0.03).walk(np.array((v, omega)))
+    assert left == pytest.approx(0.03**2 * abs(v - L / 2 * omega))
+    assert right == pytest.approx(0.03**2 * abs(v + L / 2 * omega))
+
+
 @pytest.mark.parametrize(
     ("parameters", "b"), [(WheelScales(L), [0.1, -0.05]), (GyroBias(), [-0.4])]
 )

@@ -77,6 +77,21 @@ def test_when_the_echoes_stop_the_last_input_may_have_been_held(silent: int) -> 
     assert np.linalg.eigvalsh(unknown)[0] > -1e-15
 
 
+def test_who_turned_on_the_way_is_aside_by_half_of_it() -> None:
+    """Straight on as long as anything is known, then believed to turn; perhaps held straight."""
+    straight, turning = np.array((1.0, 0.0)), np.array((1.0, 0.5))
+    flight = take_off(MODEL, 0)
+    for k in range(60):
+        flight, _ = send(MODEL, flight, straight if k < 20 else turning)
+        if k < 20:
+            flight = told(flight, k, straight, late=0)
+    unknown = doubt(flight, MODEL, np.zeros(3))
+    assert unknown is not None
+    way, turn = 40 * Ts * 1.0, 40 * Ts * 0.5
+    assert unknown[2, 2] == pytest.approx(turn**2)
+    assert unknown[1, 1] == pytest.approx((way / 2 * turn) ** 2)
+
+
 def test_a_few_ticks_of_silence_are_nothing_unusual() -> None:
     assert doubt(flown(TURNING, silent=PATIENCE), MODEL, X) is None
 

@@ -158,3 +158,15 @@ def test_what_is_prepared_for_a_measurement_hides_nothing_of_the_last_one():
     assert before is not None
     assert after is not None
     np.testing.assert_array_equal(before.value, after.value)
+
+
+@pytest.mark.parametrize("name", ["popf", "popf-printed"])
+def test_what_is_prepared_for_a_measurement_is_of_no_use_where_another_comes(record, name):
+    popf = ESTIMATORS[name].make(robot)
+    state = popf.start(record.poses[0], P0)
+    for u in record.inputs[:30]:
+        state = popf.predict(state, u)
+    came = [Measured(12, record.measurements[12])]
+    plain, prepared = popf.correct(state, came), popf.correct(popf.expect(state, 25), came)
+    np.testing.assert_array_equal(prepared.x, plain.x)
+    np.testing.assert_array_equal(prepared.P, plain.P)

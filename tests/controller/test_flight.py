@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from laglab_control import Controller, Echo, Measured, PolarLaw, RobotModel, StationConfig
+from laglab_control.flight import FEW, GIVEN_UP, Told
 from laglab_protocol import NO_COMMAND, Measurement, Receiver, Sender, Tick, frames_in
 from laglab_station import Station
 
@@ -91,6 +92,23 @@ def test_the_loss_did_matter_meanwhile():
         errors.append(link.error)
     assert max(errors) > 1e-4
     assert errors[-1] < 1e-12
+
+
+def test_a_command_that_is_held_tells_nothing_of_n():
+    """Of each only the first echo does: no later command comes, so that of tick 20 is held."""
+    link = Link("delayed-ekf", 4)
+    for k in range(60):
+        link.tick(4 if k <= 20 else None, [0])
+    told = link.control.flight.told
+    assert (link.n, told.spread, set(told.recent)) == (4, 0.0, {4})
+
+
+def test_up_to_where_the_inputs_are_settled():
+    gap = tuple(range(10, 40))
+    assert Told(known=50, missing=gap).settled == 9
+    assert Told(known=50, missing=gap[:FEW]).settled == 50
+    assert Told(known=15 + GIVEN_UP, missing=gap).settled == 15
+    assert Told(known=20 + GIVEN_UP, missing=gap).settled == 20 + GIVEN_UP
 
 
 @settings(max_examples=20)

@@ -1,66 +1,15 @@
 """An estimator that is watched: what it is told, and what the guard makes of it."""
 
-from collections.abc import Iterable, Sequence
-from typing import Any
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from laglab_control import (
-    ESTIMATORS,
-    Alarm,
-    Applied,
-    Controller,
-    Guard,
-    Measured,
-    RobotModel,
-    StationConfig,
-)
+from laglab_control import ESTIMATORS, Applied, Controller, Guard, Measured, StationConfig
 from laglab_control.guard import Watched
 from laglab_control.model import Matrix, Vector
 
-MODEL = RobotModel()
-P_0 = np.eye(3) * 1e-4
-U = np.array((0.5, 0.3))
-M = 5
-"""Ticks by which measurements are late."""
-
-
-def guarded(name: str = "delayed-ekf") -> Guard:
-    return Guard(ESTIMATORS[name].make(MODEL), MODEL)
-
-
-def driven(ticks: int, inputs: Iterable[Vector] = ()) -> list[Vector]:
-    """The poses of a robot that starts at 0 and drives a circle, or as the inputs say."""
-    poses = [np.zeros(3)]
-    for _, u in zip(range(ticks), list(inputs) or [U] * ticks, strict=False):
-        poses.append(MODEL.f(poses[-1], u))
-    return poses
-
-
-def sampled(poses: Sequence[Vector], seed: int) -> list[Measured]:
-    noise = np.random.default_rng(seed).multivariate_normal(np.zeros(3), MODEL.R, len(poses))
-    return [Measured(k, pose + v) for k, (pose, v) in enumerate(zip(poses, noise, strict=True))]
-
-
-def followed(
-    estimator: Any, measured: Sequence[Measured], x: Vector | None = None
-) -> list[Watched]:
-    """The states at every tick, each measurement M ticks late."""
-    state = estimator.start(np.zeros(3) if x is None else x, P_0)
-    states = []
-    for k in range(len(measured) + M):
-        if k:
-            state = estimator.predict(state, U)
-        state = estimator.correct(state, measured[k - M : k - M + 1] if k >= M else [])
-        states.append(state)
-    return states
-
-
-def alarms(states: Sequence[Watched]) -> list[Alarm]:
-    return [state.alarm for state in states if state.alarm]
+from .guarding import MODEL, P_0, M, U, alarms, driven, followed, guarded, sampled
 
 
 @pytest.mark.parametrize("name", [name for name in ESTIMATORS if name != "raw"])
@@ -115,10 +64,7 @@ def test_a_wild_one_that_is_late_and_told_twice_is_not_used_either() -> None:
 
 def moved(at: int, ticks: int) -> list[Vector]:
     """The poses of a robot that somebody puts elsewhere, turned, and that drives on from there."""
-    poses = [*driven(at - 1), np.array((0.9, -0.4, -2.0))]
-    for _ in range(ticks - at):
-        poses.append(MODEL.f(poses[-1], U))
-    return poses
+    return driven(at - 1) + driven(ticks - at, start=(0.9, -0.4, -2.0))
 
 
 @pytest.mark.parametrize("name", ["popf", "popf-exact", "delayed-ekf"])
@@ -130,6 +76,32 @@ def test_a_robot_that_is_elsewhere_is_found_again(name: str) -> None:
     assert "are not where the estimate has the robot" in alarm.cause
     last = states[len(poses) - 1]
     assert np.abs(MODEL.innovation(poses[-1], last.x)).max() < 0.05
+
+
+def test_of_a_robot_that_is_found_again_the_heading_is_counted_on() -> None:
+    """As many turns as before: nothing wraps the heading of a state."""
+    turns = 4 * np.pi
+    poses = driven(60, start=(0.0, 0.0, turns)) + driven(60, start=(2.0, -1.0, 0.5))
+    states = followed(guarded(), sampled(poses, seed=4), poses[0])
+    (k,) = [k for k, state in enumerate(states) if state.alarm]
+    assert abs(states[k].x[2] - states[k - 1].x[2]) < np.pi
+    assert states[len(poses) - 1].x[2] == pytest.approx(poses[-1][2] + turns, abs=0.2)
+
+
+def test_inputs_that_are_told_after_an_alarm_are_put_right_where_they_belong() -> None:
+    """The robot was put elsewhere at tick 40; at ticks 60 ... 69 it stood, as is told later."""
+    stood = [Applied(j, np.zeros(2)) for j in range(59, 69)]
+    poses = driven(39)
+    poses += driven(69, [U] * 19 + [each.u for each in stood] + [U] * 40, start=(2.0, -1.0, 0.5))
+    guard = guarded()
+    state = guard.start(poses[0], P_0)
+    for k, pose in enumerate(poses[1:], start=1):
+        state = guard.predict(state, U)
+        state = guard.correct(state, [Measured(k, pose)] if k < 60 else [], settled=59)
+    assert state.origin > 0
+    assert np.hypot(*(state.x - poses[-1])[:2]) > 0.03
+    state = guard.correct(state, [], stood)
+    assert np.hypot(*(state.x - poses[-1])[:2]) < 1e-6
 
 
 def test_the_error_after_an_alarm_is_what_is_claimed() -> None:

@@ -67,6 +67,14 @@ def test_where_the_pose_is_not_known_well_the_robot_drives_the_more_slowly():
     assert cautious.limited(Demand(1.0, -2.0), None, LAST, 0.01) == Demand(1.0, -2.0)
 
 
+@pytest.mark.parametrize("axis", [0, 1])
+def test_the_less_sure_of_x_and_y_makes_it_slow(axis):
+    P = np.diag((1e-4, 1e-4, 1.0))
+    P[axis, axis] = 0.04
+    sent = SpeedLimits(caution=0.1).limited(Demand(1.0, 0.5), P, LAST, 0.01)
+    assert (sent.v, sent.omega) == pytest.approx((0.5, 0.25))
+
+
 @given(demands, demands)
 def test_limits_on_acceleration_hold_between_one_command_and_the_next(asked, last):
     limits = SpeedLimits(v_max=1.0, accel_max=2.0, alpha_max=30.0)

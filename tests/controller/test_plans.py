@@ -15,6 +15,9 @@ from laglab_control import (
 )
 from laglab_control.doubt import doubt
 from laglab_control.flight import hear, send, sent_for, take_off
+from laglab_control.model import Vector
+from laglab_protocol import Command, Plan, Sender, Tick, frames_in
+from laglab_station import Station
 
 MODEL = RobotModel()
 H = 8
@@ -51,6 +54,35 @@ def test_each_entry_is_what_would_be_commanded_then(limits: SpeedLimits) -> None
         control = plain.answer(plain.advance(control), [])
         assert control.drive.memory == entry.memory
         np.testing.assert_allclose(control.drive[:2], entry[:2], rtol=0, atol=1e-12)
+
+
+class Clock:
+    """A law whose speed is the time it is asked for."""
+
+    def drive(self, pose: Vector, time: float, memory: object) -> Demand:
+        return Demand(time, 0.0)
+
+
+def test_each_entry_is_the_laws_at_the_time_when_it_comes_into_force() -> None:
+    planning = controller(n=3, plan=5, law=Clock())
+    control = planning.answer(planning.start(), [])
+    assert [control.drive.v, *(entry.v for entry in control.plan)] == pytest.approx(
+        [0.03, 0.04, 0.05, 0.06, 0.07, 0.08]
+    )
+
+
+def test_the_covariance_at_arrival_is_that_of_the_whole_way() -> None:
+    """Linearised where each command comes into force, not where the robot is now."""
+    flying = controller(n=30, plan=0)
+    control = flying.answer(flying.start(), [])
+    for _ in range(40):
+        control = flying.answer(flying.advance(control), [])
+    there = flying.at_arrival(control)
+    x, P = control.pose, control.P
+    for u in control.flight.in_flight:
+        x, P = MODEL.predict(x, P, u)
+    np.testing.assert_allclose(there.x, x, atol=1e-12)
+    np.testing.assert_allclose(there.P, P, rtol=1e-12)
 
 
 def test_a_plan_ends_where_the_robot_would_be_lost() -> None:
@@ -122,3 +154,14 @@ def test_raw_plans_from_where_the_robot_was_seen() -> None:
     assert planning.answer(planning.start(), []).plan == ()
     seen = planning.answer(planning.start(), [Measured(0, np.array(START))])
     assert len(seen.plan) == 3
+
+
+def test_the_stations_plan_is_meant_for_the_tick_n_later() -> None:
+    config = StationConfig(estimator="delayed-ekf", command_delay=5, plan=H)
+    station, robot = Station(config), Sender(1, 1)
+    for tick in (0, 1):
+        answer = b"".join(station.hear(frames_in(robot.frame(Tick(tick, 0)))))
+        *_, plan, command = (frame.message for frame in frames_in(answer))
+        assert isinstance(plan, Plan)
+        assert isinstance(command, Command)
+        assert (plan.tick, plan.in_force, plan.first, command.plan) == (tick, tick + 5, 1, H)

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from laglab_control import StationConfig
+from laglab_control import ESTIMATORS, Measured, RobotModel, StationConfig
 from laglab_control.estimators.popf import delay_limit
 from laglab_protocol import (
     MAV_SEVERITY_EMERGENCY,
@@ -73,3 +73,12 @@ def test_an_emergency_stop_is_noticed_however_much_the_robot_has_said():
     for tick in (100, 200):
         warnings.hear(Statustext(MAV_SEVERITY_EMERGENCY, b"emergency stop"), tick)
     assert warnings.emergency_tick == 100
+
+
+def test_the_warning_is_about_the_latest_of_the_measurements_of_a_tick():
+    popf = ESTIMATORS["popf"].make(RobotModel())
+    state = popf.start(np.zeros(3), np.eye(3) * 3e-3)
+    for _ in range(LATE):
+        state = popf.predict(state, np.array((0.5, 0.3)))
+    state = popf.correct(state, [Measured(0, np.zeros(3)), Measured(LATE, state.x)])
+    assert f"a delay of {LATE} ticks" in popf.warning(state)

@@ -3,16 +3,26 @@
 import numpy as np
 import pytest
 
-from laglab_control import StationConfig
-from laglab_protocol import Command, End, Measurement, Receiver, Sender, Tick, frames_in
+from laglab_control import RobotModel, StationConfig
+from laglab_protocol import (
+    Command,
+    End,
+    Measurement,
+    Plan,
+    Planned,
+    Receiver,
+    Sender,
+    Tick,
+    frames_in,
+)
 from laglab_station import SessionTick, Station, shadow
 from laglab_station.session import heard
 
 
 def frames(*messages):
-    """The robot's, and the station's where the message is a command."""
+    """The robot's, and the station's where the message is of a command."""
     robot, station = Sender(1, 1), Sender(200, 190)
-    senders = [station if isinstance(message, Command) else robot for message in messages]
+    senders = [station if isinstance(message, Command | Plan) else robot for message in messages]
     pairs = zip(senders, messages, strict=True)
     return [frame for sender, message in pairs for frame in frames_in(sender.frame(message))]
 
@@ -35,6 +45,12 @@ def test_repeats_and_what_is_not_whole_are_passed_over():
     assert list(told) == [SessionTick(0, (z(0),), u(0))]
 
 
+def test_a_plan_that_comes_late_is_not_the_next_commands():
+    plan = Planned(Command(1.0, 0.5, 0, 1, 1, 0, 1), 0, ((9.0, 9.0),))
+    told = heard(frames(Tick(0, 0), plan.command, Tick(1, 0), *plan.frames(), u(1)))
+    assert list(told) == [SessionTick(0, (), plan.command), SessionTick(1, (), u(1))]
+
+
 def test_a_robot_that_begins_again_goes_on_in_the_session():
     """From where the station meets it; an old tick that only comes late is none of it."""
     first = [message for k in range(50) for message in (z(k), Tick(k, 1), u(k))]
@@ -50,6 +66,18 @@ def test_a_robot_that_begins_again_goes_on_in_the_session():
 def test_a_shadow_ends_where_the_robot_begins_again():
     session = [SessionTick(k, (), u(k)) for k in (*range(5), *range(9))]
     assert [row.tick for row in shadow(StationConfig(), session)] == list(range(5))
+
+
+def test_over_lost_ticks_a_shadow_goes_on_by_the_plan():
+    config = StationConfig(estimator="delayed-ekf", initial_estimate=(1.0, 0.0, 0.0), plan=3)
+    following = ((0.6, 0.1), (0.7, 0.2), (0.8, 0.3))
+    planned = Command(0.5, 0.0, 0, 1, 1, 0, 3)
+    session = [SessionTick(0, (), planned, following=following), SessionTick(4, (), None)]
+    *_, last = shadow(config, session)
+    x = np.array((1.0, 0.0, 0.0))
+    for speeds in (planned.speeds, *following):
+        x = RobotModel().f(x, np.array(speeds))
+    np.testing.assert_allclose(last.x, x, rtol=0, atol=1e-12)
 
 
 def test_nothing_at_all():

@@ -25,6 +25,7 @@ from laglab_protocol import (
     frames_in,
 )
 from laglab_station import Station
+from laglab_station.station import LONGEST_GAP
 
 START = (-3.0, -3.0, 0.5)
 
@@ -142,6 +143,23 @@ def test_after_lost_ticks_it_goes_on_from_the_present_one():
     for _ in range(4):
         x = model.f(x, np.array(command.speeds))
     assert estimate.pose == pytest.approx(x, abs=1e-15)
+
+
+def test_over_lost_ticks_a_robot_goes_on_by_its_plan():
+    robot, model = Robot(make(plan=8)), RobotModel()
+    *_, plan, command = robot.tick(0)
+    estimate, *_ = robot.tick(4)
+    x = np.array(START)
+    for u in [command.speeds, *zip(plan.v, plan.omega, strict=True)][:4]:
+        x = model.f(x, np.array(u))
+    assert estimate.pose == pytest.approx(x, abs=1e-15)
+
+
+@pytest.mark.parametrize(("gap", "anew"), [(LONGEST_GAP, False), (LONGEST_GAP + 1, True)])
+def test_a_robot_unheard_for_longer_than_anybody_remembers_is_met_anew(gap, anew):
+    robot = Robot(make())
+    robot.tick(0)
+    assert (robot.tick(gap) == [Command(0, 0, gap, 1, 1, 0)]) is anew
 
 
 def test_a_robot_that_is_under_way_is_stopped_and_taken_over_from_where_it_stands():
