@@ -11,6 +11,7 @@ from laglab.runs.plant import FmuPlant
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import Gateway, GatewayConfig, Outcome
 from laglab_protocol import (
+    MAV_SEVERITY_WARNING,
     NO_COMMAND,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
@@ -26,6 +27,7 @@ from laglab_protocol import (
     Recall,
     Receiver,
     Sender,
+    Statustext,
     Tick,
     frames_in,
 )
@@ -149,9 +151,36 @@ def test_the_last_tick_is_not_stepped(robot: Robot) -> None:
     before = robot.read()
     gateway.open_tick()
     gateway.hear(frames_in(station.say(command(0, v=1.0))))
+    gateway.settle()
     gateway.close_tick()
     assert gateway.outcome == Outcome(EndReason.COMPLETED, 0)
     assert robot.read() == before
+
+
+def test_an_end_of_a_tick_before_the_last_answer_ends_nothing(robot: Robot) -> None:
+    """It is of a run that is past."""
+    gateway, station = gateway_of(robot, 0, 0), Station()
+    for tick in range(6):
+        gateway.open_tick()
+        gateway.hear(frames_in(station.say(command(tick))))
+        if tick == 5:
+            gateway.hear(frames_in(station.say(End(3, EndReason.COMPLETED))))
+        gateway.settle()
+        gateway.close_tick()
+    assert gateway.outcome is None
+    gateway.open_tick()
+    gateway.hear(frames_in(station.say(End(5, EndReason.COMPLETED))))
+    gateway.close_tick()
+    assert gateway.outcome == Outcome(EndReason.COMPLETED, 6)
+
+
+def test_what_a_repeated_answer_says_again_is_told_once(robot: Robot) -> None:
+    gateway, station = gateway_of(robot, 0, 0), Station()
+    gateway.open_tick()
+    text = Statustext(MAV_SEVERITY_WARNING, b"estimate is wrong")
+    for _ in range(3):
+        gateway.hear(frames_in(station.say(text, command(0))))
+    assert gateway.take_notices() == [text]
 
 
 def test_the_stations_end_ends_the_run_at_this_tick(robot: Robot) -> None:
@@ -171,3 +200,16 @@ def test_a_command_that_is_not_finite_moves_nothing(robot: Robot, value: float) 
     row = gateway.close_tick()
     assert (row.v, row.omega) == (0.0, 0.0)
     assert gateway.audit.report().refused == {"not finite": 1}
+
+
+def test_why_it_stops_is_what_was_wrong_since_the_last_command_it_followed(robot: Robot) -> None:
+    gateway, station = gateway_of(robot, 0, 0, last_tick=200), Station()
+    for tick in range(80):
+        gateway.open_tick()
+        if tick < 3:
+            v = float("nan") if tick == 1 else 0.1
+            gateway.hear(frames_in(station.say(command(tick, v))))
+        gateway.settle()
+        gateway.close_tick()
+    (notice,) = gateway.take_notices()
+    assert notice.text == b"no fresh command for 0.5 s: stopping"

@@ -2,7 +2,7 @@
 
 import math
 
-from laglab_gateway.memory import KEPT, SpeedMemory
+from laglab_gateway.memory import APPLIED_A_TICK, KEPT, MOST_OWED, Owed, SpeedMemory
 from laglab_protocol import RECALLED, Applied, Recall
 
 
@@ -49,6 +49,16 @@ def test_a_question_for_everything_is_answered_in_bounds() -> None:
     memory = remembering(3 * KEPT)
     answers = list(memory.answers(asked(2 * KEPT, 65535)))
     assert len(answers) <= KEPT // RECALLED + 1
+    answers = list(memory.answers(asked(2 * KEPT - 100, 65535)))
+    assert max(each.first + each.count for each in answers) == 3 * KEPT - 100
+
+
+def test_what_is_owed_has_a_bound() -> None:
+    owed = Owed()
+    owed.owe(Applied((0.0,) * 12, (0.0,) * 12, first, 1) for first in range(1000))
+    told = [len(owed.take()) for _ in range(1000)]
+    assert max(told) == APPLIED_A_TICK
+    assert sum(told) == MOST_OWED
 
 
 def test_it_learns_from_a_robot_of_its_own_memory_but_never_what_is_not_finite() -> None:

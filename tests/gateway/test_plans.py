@@ -155,6 +155,14 @@ def test_a_plan_of_which_a_frame_is_lost_is_counted_when_it_is_past() -> None:
     assert rig.gateway.audit.report().refused == {"incomplete": 2}
 
 
+def test_a_plan_whose_command_never_came_does_not_go_with_the_next() -> None:
+    rig = Rig()
+    rig.tick(plan_of(0, 5).frames()[0])
+    rig.tick(*said(plan_of(1, 5)))
+    sent = [row for row in rig.gateway.take_link_rows() if row.direction == "command"]
+    assert [(row.tick, row.frame) for row in sent] == [(1, 0), (1, 1)]
+
+
 def test_a_plan_that_is_late_is_read_from_where_it_should_be() -> None:
     rig = Rig(lost=[(k, 0) for k in range(6, 12)], late=[(5, 0, 4), (5, 1, 2)])
     got = rig.run(13, 9)

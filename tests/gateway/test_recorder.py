@@ -10,12 +10,15 @@ from laglab.runs.plant import FmuPlant
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
     DIRECTIONS,
+    TLOG_FILE,
+    TRACE_FILE,
     Direction,
     Fates,
     FileRecorder,
     Gateway,
     GatewayConfig,
     Impairments,
+    LinkRow,
     RandomFates,
     Recorder,
     Surroundings,
@@ -126,3 +129,11 @@ def test_ticks_that_follow_each_other_fast_are_written_together(
             there.append(len(read_trace(tmp_path / "trace.csv")["tick"]))
     assert there == written
     assert read_trace(tmp_path / "trace.csv")["tick"].tolist() == [0, 1, 2, 3]
+
+
+def test_what_another_run_had_to_say_does_not_stay(tmp_path: Path) -> None:
+    with closing(FileRecorder(tmp_path)) as recorder:
+        recorder.link([LinkRow("command", 0, 0, 0, 35, "lost", 0.0)])
+    assert (tmp_path / files.LINK_FILE).exists()
+    FileRecorder(tmp_path).close()
+    assert {path.name for path in tmp_path.iterdir()} == {TRACE_FILE, TLOG_FILE}

@@ -10,7 +10,7 @@ import pytest
 
 from laglab_gateway import Safety, Services, Watch, Watcher, standard_parameters
 from laglab_gateway.loops.datagrams import LARGEST_SENT
-from laglab_gateway.services import Askers, RobotState
+from laglab_gateway.services import Askers, RobotState, asker
 from laglab_protocol import (
     EVERY_MESSAGE,
     ROBOT_COMPONENT,
@@ -199,3 +199,17 @@ def test_who_left_is_told_nothing_more() -> None:
     askers.heard_from("there", 150.0)
     askers.forget_silent(161.0)
     assert [address for address, _ in askers.known()] == [None, "there"]
+
+
+def test_to_who_left_the_watch_sends_nothing_more(
+    watched: Watched, station: Callable[[], Endpoint], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(asker, "GONE", 0.2)
+    watcher = station()
+    watcher.send(Sender(255, 190).frame(STATION_HEARTBEAT))
+    watched.for_a_while(0.15)
+    assert heard(watcher)
+    watched.for_a_while(0.2)
+    datagrams(watcher)
+    watched.for_a_while(0.3)
+    assert datagrams(watcher) == []

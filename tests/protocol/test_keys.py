@@ -20,7 +20,7 @@ from laglab_protocol import (
     read_key,
     refuse_open_door,
 )
-from laglab_protocol.signing.keys import StoredTimestamps
+from laglab_protocol.signing.keys import StoredTimestamps, timestamps_path
 from laglab_protocol.signing.signature import AHEAD, CLOCK_EVERY, MINUTE, Signer, Verifier
 
 KEY = bytes(range(32))
@@ -115,6 +115,14 @@ def test_every_stream_is_kept_across_a_second_crash(tmp_path: Path) -> None:
     late = signed(NOW + 2 * AHEAD, stream=slow)
     assert hears(signed(NOW + MINUTE, stream=fast), late) == [True, True]
     assert hears(late) == [False]
+
+
+def test_at_the_end_what_is_kept_is_exact(key_file: Path) -> None:
+    """So that what is said next is not refused for the second that was written ahead."""
+    with Codec(200, 190, key_file) as station, Codec(1, 1, key_file) as robot:
+        raw = station.sender.frame(COMMAND)
+        assert robot.receiver.receive(raw, whole=True)
+    assert StoredTimestamps(timestamps_path(key_file, 1, 1)).last == {STREAM: stamp_of(raw)}
 
 
 def test_places_that_a_wrong_clock_left_lock_no_new_stream_out(tmp_path: Path) -> None:

@@ -139,6 +139,19 @@ def test_late_and_repeated_frames_are_no_losses() -> None:
     assert receiver.counters.late == {(1, 1): 2}
 
 
+@pytest.mark.parametrize(("behind", "late", "lost"), [(128, 1, 0), (129, 0, 127)])
+def test_a_frame_is_late_up_to_half_of_all_sequence_numbers(
+    behind: int, late: int, lost: int
+) -> None:
+    sent = frames_of(130)
+    receiver = Receiver()
+    receiver.receive(b"".join(sent))
+    receiver.receive(sent[130 - behind])
+
+    assert receiver.counters.late.get((1, 1), 0) == late
+    assert receiver.counters.lost.get((1, 1), 0) == lost
+
+
 def test_counters_are_a_snapshot() -> None:
     receiver = Receiver()
     before = receiver.counters

@@ -20,6 +20,7 @@ from laglab_gateway import (
     first_tick,
     read_link_log,
 )
+from laglab_gateway.link.timeline import in_force
 from laglab_protocol import Command
 
 TS = 0.01
@@ -141,6 +142,13 @@ def test_outages_and_events_come_and_go_at_their_times() -> None:
     stamps = {stamp for stamp, _ in cross(line, 200)}
     assert set(range(200)) - stamps == {*range(20, 30), *range(100, 150)}
     assert not event.concerns("measurement")
+
+
+def test_where_events_overlap_the_later_in_the_list_is_in_force() -> None:
+    base, first, second = (Impairments(loss=loss) for loss in (0.0, 0.1, 0.2))
+    events = [Event(1.0, 2.0, first), Event(2.0, 2.0, second)]
+    there = [in_force(base, events, time).loss for time in (0.5, 1.5, 2.5, 3.5, 4.5)]
+    assert there == [0.0, 0.1, 0.2, 0.2, 0.0]
 
 
 @pytest.mark.parametrize("tick", [0, 1, 3, 7, 29, 57])

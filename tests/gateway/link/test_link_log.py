@@ -59,6 +59,13 @@ def test_a_replay_begins_again_at_its_end_in_both_directions_at_once() -> None:
     assert [each.extra for each in got[:5]] == [0.01, 0.0, 0.03, 0.0, 0.0]
 
 
+def test_a_record_that_begins_later_is_replayed_at_its_own_ticks() -> None:
+    rows = [LinkRow("command", tick, 0, 0, 35, *told) for tick, told in enumerate(TOLD, start=5)]
+    fates = RecordedFates(rows)
+    got = [fates.of(tick, tick * TS, b"x")[0] for tick in range(5, 11)]
+    assert [(each.kind, each.extra) for each in got] == [*TOLD, *TOLD]
+
+
 def test_what_is_in_a_recorded_frames_datagram_shares_its_fate() -> None:
     fates = RecordedFates([LinkRow("command", 7, 0, 0, 35, "lost", 0.0)])
     for tick in (7, 8, 107):

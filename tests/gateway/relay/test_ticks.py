@@ -138,6 +138,20 @@ def test_a_robot_that_begins_again_brings_nothing_out_of_order() -> None:
     assert (report.command.reordered, report.measurement.reordered) == (0, 0)
 
 
+def test_what_a_robot_did_before_it_began_again_is_nobodys_answer() -> None:
+    rig = Rig(relay(1, 0))
+    rig.run(60)
+    rig.robot = Robot()
+    rig.run(30)
+    for _ in range(3):
+        rig.feed(rig.robot.tick())
+        rig.say(Recall(40, 4, 1, 1), Command(0.0, 0.0, rig.relay.tick, 1, 1, 1))
+        rig.forward()
+        rig.run(3)
+    told = [each for batch in rig.told for each in batch if isinstance(each, Applied)]
+    assert {each.v[0] for each in told} == {0.25}, "by the robot's own word"
+
+
 def test_a_command_overtaken_on_the_link_is_stale() -> None:
     held_back = Impairments(reorder=1.0, reorder_by=0.05)
     rig = Rig(relay(commands=fates_of(Event(0.0, 0.01, held_back))))

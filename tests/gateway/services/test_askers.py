@@ -76,6 +76,16 @@ def test_however_many_ask_only_so_many_are_known() -> None:
     assert askers.heard_from("much later", 20.0) is not late
 
 
+def test_room_is_made_by_whoever_was_silent_for_longest() -> None:
+    askers = Askers()
+    for number in range(16):
+        askers.heard_from(number, 0.0)
+    askers.heard_from(0, 19.0)
+    askers.heard_from("new", 20.0)
+
+    assert {address for address, _ in askers.known()} == {0, *range(2, 16), "new"}
+
+
 @pytest.mark.parametrize("number", [RESET, 520, 511, 512, 410, 176, STOP, ARM])
 def test_who_is_not_trusted_may_see_arm_and_stop(services: Services, number: int) -> None:
     numbers = {ARM: (1.0,), STOP: (1.0,), 511: (0.0, 1e6), 512: (0.0,), 176: (8.0, 0.0)}.get(

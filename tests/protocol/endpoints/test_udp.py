@@ -7,6 +7,7 @@ from contextlib import ExitStack
 import pytest
 
 from laglab_protocol import Endpoint, NoSuchPortError, open_endpoint
+from laglab_protocol.endpoints.udp import STRANGERS_A_SECOND, STRANGERS_DATAGRAM
 
 WAIT = 2.0
 
@@ -78,6 +79,21 @@ def test_a_later_accepted_peer_replaces_the_first(stack: ExitStack) -> None:
 
     assert again.receive(WAIT) == b"answer"
     assert station.receive(0.02) == b""
+
+
+def test_beside_a_peer_strangers_are_rationed(stack: ExitStack) -> None:
+    robot, station = udp_pair(stack)
+    station.send(b"hello")
+    robot.receive(WAIT)
+    robot.accept_peer()
+    stranger = stack.enter_context(open_endpoint(station.name))
+    for _ in range(20):
+        stranger.send(bytes(1400))
+    began, heard = time.monotonic(), 0
+    while time.monotonic() < began + 0.3:
+        heard += len(robot.receive(0.01))
+    seconds = time.monotonic() - began
+    assert 0 < heard < STRANGERS_DATAGRAM + 1400 + STRANGERS_A_SECOND * (seconds + 0.1)
 
 
 def test_beside_a_peer_that_was_left_nobody_is_a_stranger(stack: ExitStack) -> None:
