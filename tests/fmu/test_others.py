@@ -1,5 +1,6 @@
 """The other robots that ship: how they move, and that they are FMUs as the first one is."""
 
+import cmath
 import math
 import re
 import subprocess
@@ -104,3 +105,15 @@ def test_the_omnidirectional_one_does_as_told_and_slides_on_a_worn_wheel(
     assert worn[1] == pytest.approx(TS * rim / 3)
     assert worn[3] == pytest.approx(0.5 - 2 / 3 * math.sqrt(0.75) * rim)
     assert worn[4] == pytest.approx(rim / (3 * 0.2))
+
+
+def test_what_slides_while_it_turns_follows_its_arc(fmus: dict[str, Path]) -> None:
+    """By the chord, which is shorter than the arc and points half of the turn further."""
+    told: Parameters = {"noise": False, "first_wheel_error": -0.5}
+    euler, arc = (
+        driven(fmus["Omni3"], 5.0, 60.0, ticks=1, integration=how, **told)[0] for how in (1, 2)
+    )
+    speed, a = complex(euler[0], euler[1]) / TS, TS * arc[4] / 2
+    assert abs(speed.imag) > 0.1
+    expected = TS * speed * math.sin(a) / a * cmath.exp(1j * a)
+    assert complex(arc[0], arc[1]) == pytest.approx(expected)

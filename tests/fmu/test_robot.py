@@ -3,6 +3,7 @@
 import math
 import os
 import tempfile
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -65,6 +66,16 @@ def test_reset_starts_again() -> None:
         again = [robot.read(), *(robot.step(1.0, 2.0) for _ in range(20))]
     with Robot.open(2, parameters) as robot:
         assert again == [robot.read(), *(robot.step(1.0, 2.0) for _ in range(20))]
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_a_reset_may_change_the_sample_time(version: int) -> None:
+    slow = RobotParameters(noise=False, sample_time=0.05)
+    with Robot.open(version, replace(slow, sample_time=0.01)) as robot:
+        robot.step(10.0, 10.0)
+        robot.reset(slow)
+        moved = [robot.step(10.0, 10.0).x for _ in range(3)]
+    assert moved == pytest.approx([0.05 * 0.5 * k for k in (1, 2, 3)])
 
 
 def run_with_steps(steps: list[float], parameters: RobotParameters) -> Reading:

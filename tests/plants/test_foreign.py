@@ -6,9 +6,12 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from fmpy.model_description import ModelVariable
 
 from laglab_fmu import CallError, FmuFileError, fmu_path
 from laglab_fmu.foreign import FmuFile, ForeignRobot, Wiring, check
+from laglab_fmu.foreign.steps import substeps
+from laglab_fmu.foreign.values import starts
 
 from .building import CO_SIMULATION, FIXED_STEP, rover
 
@@ -124,6 +127,23 @@ def test_a_step_of_its_own_is_kept(tmp_path: Path, library: Path) -> None:
         check(file, ROVER, 0.012)
     with pytest.raises(FmuFileError, match=r"not 0\.001"):
         check(file, ROVER, 0.001)
+
+
+@pytest.mark.parametrize(("sample_time", "parts"), [(0.29, 58), (0.035, 7), (0.005, 1)])
+def test_a_sample_is_cut_into_whole_steps_whatever_their_quotient_rounds_to(
+    sample_time: float, parts: int, tmp_path: Path, library: Path
+) -> None:
+    file = FmuFile.read(rover(tmp_path / "rover.fmu", library, [FIXED_STEP]))
+    assert substeps(file, sample_time) == parts
+
+
+def test_one_start_value_is_that_of_all_elements() -> None:
+    def variable(start: str | None, *shape: int) -> ModelVariable:
+        return ModelVariable("pose", 1, start=start, shape=shape)
+
+    assert starts(variable("2.5", 2, 2)) == [2.5] * 4
+    assert starts(variable("1 2", 2)) == [1.0, 2.0]
+    assert starts(variable(None, 2)) == [0.0, 0.0]
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from zipfile import ZipFile
 
 import msgspec
 import numpy as np
@@ -17,6 +18,7 @@ from laglab.studies.sweep.cells.compute import computed
 from laglab.studies.sweep.cells.ways import how
 from laglab.studies.sweep.loading import load_study, to_toml
 from laglab.studies.sweep.study import Study
+from laglab.version import _sources
 from laglab_control.plugins import source_of
 
 HERE = (0.0, 0.0, 0.0)
@@ -78,6 +80,18 @@ def test_cells_on_impaired_links_are_the_same_in_whatever_company(tmp_path: Path
     assert not together[0]["rms_x"].equals(together[3]["rms_x"]), "of popf, without loss and with"
 
 
+def test_where_a_guard_acts_the_row_is_that_of_the_run_alone() -> None:
+    told = {"estimator.kind": "ekf", "estimator.guard": True, "duration": 2.0}
+    (cell,) = Study(load("lab", told), (1,)).cells()
+    run = laglab.run("lab", {**told, "seed": 1})
+    assert how(cell).batch
+    assert run.alarms
+    assert run.summary.rms_error is not None
+    (row,) = computed([cell])[0].to_pylist()
+    assert row["rms_x"] == pytest.approx(run.summary.rms_error.x, rel=1e-9)
+    assert row["final_rho"] == pytest.approx(run.summary.final.rho, abs=1e-9)
+
+
 def test_every_seed_starts_somewhere_of_its_own_within_the_radius(cells: list[Cell]) -> None:
     u = np.random.default_rng((5, 3)).random(3)
     x, y, theta = cells[0].starts()[1]
@@ -120,6 +134,25 @@ def test_what_somebody_brings_is_part_of_the_code(
         module.write_text(text)
         origins.add(Study(load("lab", {key: f"{module.stem}:It"}), (1,)).origin)
     assert len(origins) == 2
+
+
+@pytest.mark.parametrize("key", ["link.replay", "law.path", "plant.fmu"])
+def test_a_file_of_the_grid_that_has_changed_makes_other_cells(key: str, tmp_path: Path) -> None:
+    path, origins = tmp_path / "a_file", set()
+    for text in ("this", "this", "that"):
+        path.write_text(text)
+        origins.add(Study(load("lab"), (1,), {key: [str(path)]}).origin)
+    assert len(origins) == 2
+
+
+def test_of_an_fmu_its_sources_are_part_of_the_code(tmp_path: Path) -> None:
+    told = []
+    for binary, source in (("1", "a"), ("2", "a"), ("2", "b")):
+        with ZipFile(tmp_path / "Robot3.fmu", "w") as fmu:
+            fmu.writestr("binaries/x.so", binary)
+            fmu.writestr("sources/robot.c", source)
+        told.append(dict(_sources(tmp_path, "laglab_fmu")))
+    assert told[0] == told[1] != told[2]
 
 
 def test_a_package_that_fails_as_it_is_loaded_has_no_source(

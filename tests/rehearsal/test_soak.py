@@ -144,6 +144,14 @@ def test_a_turn_alone_has_no_minutes(refused: Callable[..., str]) -> None:
     assert "leave --minutes out" in refused("soak", "--turn", "3", "--minutes", "1")
 
 
+def test_sides_that_never_meet_though_nobody_was_struck_did_not_end() -> None:
+    parts = tuple(
+        replace(part, dismissed=True, exit_code=130, met=False) for part in AS_IT_SHOULD.parts
+    )
+    apart = replace(AS_IT_SHOULD, parts=parts)
+    assert list(failures(apart)) == ["every side ends by itself"]
+
+
 def test_what_is_in_a_folder_is_no_soaks_to_take_away(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

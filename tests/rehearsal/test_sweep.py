@@ -18,6 +18,7 @@ import pytest
 import laglab as lab
 from laglab.errors import RunError, StudyError
 from laglab.studies.sweep.cells.tasks import grouped
+from laglab.studies.sweep.folder import ABANDONED, Folder
 from laglab.studies.sweep.loading import load_study, shipped_study_names
 from laglab.studies.sweep.work import work_left
 from laglab.studies.workers import Processes, as_done
@@ -149,6 +150,16 @@ def test_other_code_computes_anew(out: Path, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr("laglab.studies.sweep.study.code_version", lambda: "another")
     other = load_study(str(out.parent / "small.toml"))
     assert not keys & {cell.key for cell in other.cells()}
+
+
+def test_what_another_is_writing_stays_and_what_nobody_will_finish_goes(out: Path) -> None:
+    study = load_study(str(out.parent / "small.toml"))
+    cells = Folder.made(out, study).cells
+    for name, age in ((".1-a.new", 60.0), (".2-b.new", ABANDONED + 60)):
+        (cells / name).touch()
+        os.utime(cells / name, (time.time() - age,) * 2)
+    Folder.made(out, study)
+    assert [path.name for path in cells.iterdir()] == [".1-a.new"]
 
 
 def test_from_python_with_any_executor(tmp_path: Path) -> None:

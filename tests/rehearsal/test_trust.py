@@ -1,8 +1,13 @@
 """How far each station can be trusted."""
 
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 
+import laglab
 from laglab.studies.trust import CONDITIONS, Fared, Trial, scores, stations
+from laglab.studies.trust.trials import _late_error
 
 
 def test_the_command_leaves_table_and_picture(tmp_path, ended, monkeypatch):
@@ -39,6 +44,17 @@ def test_the_scores_are_those_of_the_runs():
     assert (score.runs, score.converged, score.alarmed) == (3, 2, 2)
     assert score.rms == pytest.approx((0.25 / 3) ** 0.5)
     assert score.found == 0.5
+
+
+def test_the_error_after_an_alarm_is_looked_at_two_seconds_later():
+    run = laglab.run("lab", {"duration": 4.0})
+    off = [run.trace[f"{axis}_est"][300] - run.trace[axis][300] for axis in ("x", "y")]
+
+    def late_error(*alarms):
+        return _late_error(SimpleNamespace(alarms=alarms, trace=run.trace, scenario=run.scenario))
+
+    assert late_error(100, 350) == pytest.approx(np.hypot(*off))
+    assert late_error(201) is late_error() is None
 
 
 @pytest.mark.parametrize("options", [("--only", "nonsense"), ("--estimator", "nonsense")])

@@ -118,6 +118,18 @@ def test_bursts_are_counted() -> None:
     assert bursts(np.array([False])) == []
 
 
+def test_an_answer_that_comes_twice_counts_once_and_when_it_came_first() -> None:
+    prober = Prober(7, 2, INTERVAL_US, FILLER)
+    for number in range(2):
+        prober.say(number * INTERVAL_US * 1000)
+    answer = Probe(5, (0, 0, 0), 7, 0, INTERVAL_US, (NO_PROBE,) * 3, FILLER)
+    for now in (12_000_000, 19_000_000):
+        prober.hear(answer, now)
+    assert prober.answered == 1
+    _, theirs = prober.times()
+    assert theirs.apart[0] == pytest.approx(12e-3 - 5e-9)
+
+
 def test_an_end_that_hears_nothing_tells_of_nothing_and_is_forgotten() -> None:
     echo = Echo(FILLER)
     assert echo.say(0) is None
