@@ -15,6 +15,7 @@ import pymavlink
 import pytest
 
 import laglab
+from laglab.results.numbers import has_converged
 from laglab.scenario import load
 from laglab_gateway import read_trace
 
@@ -148,6 +149,16 @@ def test_a_report_is_left_where_one_is_asked_for(ended: Ended, folder: Path) -> 
     assert "fig4" in (folder / "run" / "report.html").read_text("utf-8")
 
 
+def test_where_the_last_measurements_are_still_on_their_way_the_others_tell() -> None:
+    ticks, axes = 300, ("x", "y", "theta")
+    trace = {"time": np.arange(ticks) * 0.01} | {axis: np.full(ticks, np.nan) for axis in axes}
+    measured = np.random.default_rng(1).normal(0, 0.05, ticks)
+    measured[-20:] = np.nan
+    trace |= {f"{axis}_meas": measured for axis in axes}
+    assert has_converged(trace, (0.0, 0.0, 0.0))
+    assert not has_converged(trace, (0.2, 0.0, 0.0))
+
+
 FAILING = """
 class Law:
     def __init__(self, goal): pass
@@ -159,4 +170,7 @@ def test_a_verdict_names_the_tick_of_a_failure_once(ended: Ended, folder: Path) 
     (folder / "failing.py").write_text(FAILING)
     ended("run", "lab", "--law", "failing:Law", "--transport", "inline", "--out", "run")
     said = laglab.open_run("run").summary.verdict
-    assert re.fullmatch(r"stopped at tick \d+: failing:Law\.drive: ValueError: no more", said)
+    assert re.fullmatch(
+        r"stopped at tick \d+: failing:Law\.drive: ValueError: no more \(failing\.py, line 4\)",
+        said,
+    )
