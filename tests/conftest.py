@@ -4,6 +4,7 @@ import compileall
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import venv
@@ -23,7 +24,10 @@ COMPONENTS = ("fmu", "protocol", "gateway", "controller", "rehearsal")
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Compile the packages once: hundreds of the tests' processes would each do it again."""
+    """Compile the packages once: hundreds of the tests' processes would each do it again. And let
+    them be interrupted, though who started us had us ignore that: children inherit it."""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     if not hasattr(config, "workerinput"):
         for component in COMPONENTS:
             compileall.compile_dir(ROOT / component, quiet=2)
