@@ -94,7 +94,7 @@ def test_the_page_s_robot_runs_the_same_by_every_way(ice: Path, laglab: Laglab) 
 def test_what_fails_in_a_process_of_its_own_ends_the_run(ice: Path, laglab: Laglab) -> None:
     done = laglab("run", "fig6", "--set", "plant.kind=faulty:Raises")
     assert done.returncode == 4
-    said = "laglab: tick 6: faulty:Raises.step: ValueError: no ice left here"
+    said = "laglab: tick 6: faulty:Raises.step: ValueError: no ice left here (faulty.py, line 8)"
     assert done.stderr.splitlines()[0] == said
     assert "Traceback" not in done.stderr
     assert 5 <= len(read_trace(ice / "runs" / "fig6" / "trace.csv")["tick"]) <= 7
