@@ -20,8 +20,8 @@ RECENT = 25
 GIVEN_UP = 256
 """Ticks after which an input that was not told is taken to have been as believed."""
 STOOD = 25
-"""A robot that says for more ticks than this that it stands still, though it was to drive, does not
-obey: its failsafe goes on being at rest for less when a link comes back."""
+"""A robot that says for n ticks, and for more than this beyond, that it stands still though it was
+to drive does not obey: when a link comes back, and at the start, it rests for n."""
 FEW = 20
 """So many ticks whose input may have been another one make no difference that shows."""
 
@@ -81,10 +81,9 @@ class Told(NamedTuple):
         inputs += recalled
         return _found(told, inputs, tick) if told.missing else told, inputs
 
-    @property
-    def has_stood(self) -> bool:
-        """Whether the robot has stood still for long, as far as it tells."""
-        return self.stood > STOOD
+    def has_stood(self, n: int) -> bool:
+        """Whether the robot has stood still for longer than it takes to get going again."""
+        return self.stood > STOOD + n
 
     @property
     def settled(self) -> int:
@@ -149,6 +148,8 @@ def send(
 
     Where commands plan ahead, `plan` begins with the command itself.
     """
+    if flight.stands and _nobody_tells(flight):
+        flight = _rebuilt(robot, flight._replace(stands=False))
     tick, sent, n, told, in_flight, _, plans, stands = flight
     if plans:
         plans, u = plans.send(plan)
@@ -179,7 +180,7 @@ def hear(
     seen = told.usual_delay(otherwise=flight.usual_delay)
     if plans and seen >= n:  # the robot is that far on in its plans
         plans, seen = plans.late(seen - n), n
-    stands = told.has_stood and _was_to_drive(flight, told.known)
+    stands = told.has_stood(seen) and _was_to_drive(flight, told.known)
     flight = Flight(tick, sent, seen, told, in_flight, ahead, plans, stands)
     if seen == n and stands == stood:
         return flight, inputs
@@ -205,6 +206,11 @@ def _heard(told: Told, echo: Echo, tick: int) -> Told:
     gap = echo.tick - known
     stood = (stood + gap if gap <= FEW else 1) if echo.u.tolist() == AT_REST else 0
     return Told(recent, newest, echo.tick, missing, echo.u, before, usual, spread, stood)
+
+
+def _nobody_tells(flight: Flight) -> bool:
+    """Whether it is so long ago that the robot stood still that it may drive again."""
+    return flight.tick - 1 - flight.told.known > (flight.told.usual or 0) + FEW
 
 
 def _was_to_drive(flight: Flight, known: int) -> bool:

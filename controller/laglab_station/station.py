@@ -35,7 +35,7 @@ LONGEST_GAP = MEMORY
 
 STANDS = (
     "the robot stands still, whatever it is sent: see whether it is armed, refuses such commands, "
-    "or does not get them"
+    "gets none of them, or gets them later than n says"
 )
 
 

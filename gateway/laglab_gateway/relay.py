@@ -20,6 +20,7 @@ from laglab_gateway.outcome import Outcome, reason_of
 from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import RobotState, Services
 from laglab_gateway.side import RobotSide
+from laglab_gateway.stopping import Stopping
 from laglab_protocol import (
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
@@ -164,7 +165,7 @@ class Relay(RobotSide):
         self.audit.measurement.begin_anew()
         self._memory.forget()
         self._owed.forget()
-        self._drive = Drive()
+        self._drive, self._stopping = Drive(), Stopping()
 
     def _audit(self, sample: Measurement) -> None:
         """n by the robot's own word: the command of the sample was in force from s - 1 on."""

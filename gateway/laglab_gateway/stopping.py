@@ -14,7 +14,7 @@ class Stopping:
 
     def __init__(self) -> None:
         self._refused: Rejection | None = None
-        self._told: Rejection | None = None
+        self._told = set[Rejection]()
 
     @property
     def by_itself(self) -> bool:
@@ -28,11 +28,14 @@ class Stopping:
 
     def followed(self) -> None:
         """A command came into force."""
-        self._refused = self._told = None
+        self._refused = None
+        self._told.clear()
 
     def news(self) -> str | None:
         """What is to be said once nothing has come into force for so long that the robot stops:
         each reason once."""
-        why, told = self._refused, self._told
-        self._told = why
-        return None if why is None or why is told else SAID[why]
+        why = self._refused
+        if why is None or why in self._told:
+            return None
+        self._told.add(why)
+        return SAID[why]

@@ -37,6 +37,7 @@ def conform(
     or has a clock of its own; `scope`, of one in lock-step, whether all is tried, or only whether
     it gives up a silent station, or only how it reads frames; `progress` is told where it is, and
     then what is tried.
+    After Ctrl-C the report has the items that were tried by then (`Report.is_whole`).
     Raises the EndpointError and KeyFileError trees.
     """
     with open_endpoint(url) as endpoint:

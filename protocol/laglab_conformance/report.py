@@ -34,8 +34,8 @@ class Report(NamedTuple):
 
     @property
     def conforms(self) -> bool:
-        """Whether every mandatory item was passed or did not apply."""
-        return not any(each.mandatory and each.mark is Mark.FAILED for each in self.results)
+        """Whether every mandatory item was passed or did not apply; none was left out."""
+        return self.is_whole and not any(map(_counts, self.results))
 
     @property
     def tried(self) -> bool:

@@ -122,4 +122,5 @@ def test_a_kit_that_is_interrupted_tells_what_it_saw_and_lets_the_robot_go(
     assert marks[:4] == [Mark.PASSED] * 4
     assert set(marks[4:]) == {Mark.INTERRUPTED}
     assert not report.is_whole
+    assert not report.conforms
     assert report.table().endswith("the robot was not tested to the end")

@@ -12,6 +12,7 @@ from laglab.errors import MissingExtraError
 from laglab.results.figures import Width, draw_runs
 from laglab.results.figures.style import MOST_HIGH
 from laglab.results.numbers import robot_pose
+from laglab.results.report import report_html
 
 WIDTHS: tuple[Width, ...] = ("one", "two")
 
@@ -61,7 +62,9 @@ def test_a_title_too_long_ends_at_a_whole_key_kinds_first(tracked: laglab.Run) -
 def test_a_summary_says_with_what_it_was_made(tmp_path: Path) -> None:
     made = laglab.run("fig6", {"duration": 0.1}, out=tmp_path / "run")
     assert made.summary.versions["numpy"] == np.__version__
-    assert set(laglab.open_run(tmp_path / "run").summary.versions) == {"Python", "numpy", "FMPy"}
+    kept = laglab.open_run(tmp_path / "run").summary
+    assert set(kept.versions) == {"Python", "numpy", "FMPy"}
+    assert f"by laglab {kept.laglab}, Python " in report_html([made])
 
 
 def test_without_pandas_it_is_said_what_brings_it(

@@ -90,7 +90,7 @@ def test_however_long_nobody_was_heard(silent: int) -> None:
 
 
 KNOWN = STOOD + 3
-"""Ticks at rest after which a robot that was to drive is taken not to obey."""
+"""So many ticks beyond n at rest a robot that was to drive is taken not to obey."""
 
 
 @pytest.mark.parametrize("limit", ["v_limit", "omega_limit"])
@@ -115,9 +115,33 @@ def test_what_is_sent_in_vain_for_long_moves_nothing() -> None:
     n, m = run.scenario.link.command_delay, run.scenario.link.measurement_delay
     off = np.abs(deviation(run.trace, loop_estimates(run.trace))).max(axis=1)
     stopped = 100 + n + 100  # the failsafe's time and its ramp
-    assert off[stopped : stopped + KNOWN].max() > 0.05
-    assert off[stopped + m + KNOWN : 400 + n].max() < 1e-6
+    assert off[stopped : stopped + n + KNOWN].max() > 0.05
+    assert off[stopped + n + m + KNOWN : 400 + n].max() < 1e-6
     assert off[400 + n + m + SOON :].max() < 1e-6
+
+
+def test_a_robot_that_stood_may_drive_again_when_nobody_tells() -> None:
+    """It gets commands again while its measurements are lost: to go on believing that it stands
+    would lead it ever further away."""
+    down = [("command", 1.0, 1.8), ("both", 2.8, 0.2), ("measurement", 3.0, 2.0)]
+    events = [
+        {"at": at, "duration": duration, "direction": direction, "link": {"loss": 1.0}}
+        for direction, at, duration in down
+    ]
+    overrides = {"estimator.kind": "delayed-ekf", "link.event": events, "law.v_max": 1.0}
+    run = laglab.run("fig6", overrides | {"law.omega_max": 1.7, "duration": 8.0})
+    off = np.abs(deviation(run.trace, loop_estimates(run.trace))).max(axis=1)
+    assert off.max() < 0.5
+    assert error_after(run, 500) < 1e-6
+    assert run.summary.converged
+
+
+@pytest.mark.parametrize("n", [30, 60])
+def test_a_robot_that_waits_for_what_is_on_its_way_obeys(n: int) -> None:
+    """After an outage both ways it rests until the first new command has crossed."""
+    lost = {"at": 1.0, "duration": 2.0, "link": {"loss": 1.0}}
+    run = laglab.run("lab", {"link.command_delay": n, "link.event": [lost], "duration": 6.0})
+    assert not any("stands still" in each for each in run.summary.warnings)
 
 
 class Hand(MemoryRecorder):
@@ -153,7 +177,7 @@ def test_a_robot_that_stays_disarmed_stands(estimator: str, guard: bool) -> None
     n, m = scenario.link.command_delay, scenario.link.measurement_delay
     trace = handled(scenario, 115, 315)
     off = np.abs(deviation(trace, loop_estimates(trace))).max(axis=1)
-    assert off[115 + m + KNOWN : 315].max() < 1e-6
+    assert off[115 + n + m + KNOWN : 315].max() < 1e-6
     assert off[315 + m].max() > 0.05, "nobody has told yet that it drives again"
     assert off[315 + n + m + SOON :].max() < 1e-6
 

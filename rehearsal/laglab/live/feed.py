@@ -1,12 +1,13 @@
 """The loop's side of a live page: a recorder that tells, and hears two orders."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import contextmanager
 from time import monotonic
 from typing import NamedTuple, TypeVar
 
 from laglab.live.messages import Caller, Line, Rows
 from laglab_gateway import (
+    FOLLOWED,
     ArrivalRow,
     ClaimRow,
     FateKind,
@@ -100,8 +101,9 @@ class Feed(Recorder):
         rows.trace = _last(rows.trace[::every])
         kept = {row.tick for row in rows.trace}
         rows.claims = [each for each in rows.claims if each.tick in kept]
-        seen = [each for each in rows.arrivals if each.arrived in kept or each.refused]
-        rows.arrivals, rows.timing = _last(seen), _last(rows.timing[::every])
+        if every > 1:
+            rows.arrivals = [each for each in rows.arrivals if _is_seen(each, kept)]
+        rows.arrivals, rows.timing = _last(rows.arrivals), _last(rows.timing[::every])
         rows.link = _last([row for row in rows.link if row.fate != FateKind.DELIVERED])
         rows.stopped = self._controls.stopped()
         frames, rows.frames = rows.frames, rows.frames[:MOST_FRAMES]
@@ -109,6 +111,11 @@ class Feed(Recorder):
         for first in range(MOST_FRAMES, len(frames), MOST_FRAMES):
             more = frames[first : first + MOST_FRAMES]
             self._caller.say(Rows(frames=more, stopped=rows.stopped))
+
+
+def _is_seen(arrival: ArrivalRow, ticks: Collection[int]) -> bool:
+    """One of these ticks, in either direction, and all that was refused."""
+    return arrival.arrived in ticks or arrival.refused != FOLLOWED
 
 
 def _is_text(frame: bytes) -> bool:

@@ -42,7 +42,7 @@ def announced(scenario: Scenario) -> list[Span]:
     return [
         Span(event.at, min(event.at + event.duration, last))
         for event in scenario.link.event
-        if event.link.loss >= 1
+        if event.link.loss >= 1 and event.at < last
     ]
 
 

@@ -6,7 +6,7 @@ from laglab_gateway import Safety
 from laglab_protocol import Command, CommandAck, CommandLong, Message, Planned
 from laglab_protocol.dialect.generated import laglab as mavlink
 
-from .rig import Rig, relay
+from .rig import Rig, Robot, relay
 
 
 def test_why_the_robot_stops_is_said_when_it_stops_and_once() -> None:
@@ -24,6 +24,32 @@ def test_why_the_robot_stops_is_said_when_it_stops_and_once() -> None:
         rig.forward()
     (notice,) = rig.relay.take_notices()
     assert notice.text == b"commands are beyond V_MAX, OMEGA_MAX: stopping"
+
+
+def refused(rig: Rig, ticks: int, *speeds: float) -> list[bytes]:
+    """What is said while only such commands come, in turn."""
+    for number in range(ticks):
+        rig.feed(rig.robot.tick())
+        rig.say(Command(speeds[number % len(speeds)], 0.0, rig.relay.tick, 1, 1, 0))
+        rig.forward()
+    return [notice.text for notice in rig.relay.take_notices()]
+
+
+def test_each_reason_is_said_once_however_they_take_turns() -> None:
+    rig = Rig(relay(safety=Safety(v_limit=1.0)))
+    rig.run(5)
+    assert sorted(refused(rig, 120, 5.0, float("nan"))) == [
+        b"commands are beyond V_MAX, OMEGA_MAX: stopping",
+        b"commands are not finite: stopping",
+    ]
+
+
+def test_of_a_robot_that_has_begun_again_it_is_said_anew() -> None:
+    rig = Rig(relay(safety=Safety(v_limit=1.0)))
+    rig.run(5)
+    (first,) = refused(rig, 80, 5.0)
+    rig.robot = Robot()
+    assert refused(rig, 120, 5.0)[-1] == first
 
 
 @pytest.mark.parametrize(

@@ -116,6 +116,18 @@ def test_where_the_robot_fails_both_sides_have_their_say(
     assert len(warned) == 1
 
 
+@pytest.mark.usefixtures("brought")
+@pytest.mark.parametrize("transport", ["inline", "udp"])
+def test_where_the_station_fails_both_sides_have_their_say(
+    tmp_path: Path, transport: rehearse.Transport
+) -> None:
+    told = {"law.kind": "mine:FailingLaw", "duration": 2.0}
+    ending = run_into(tmp_path / "run", load("lab", told), transport, rehearse.unheard)
+    assert "ZeroDivisionError" in ending.problem
+    assert ending.station is not None
+    assert ending.link is not None
+
+
 def test_a_guard_lets_no_such_state_pass(brought: Path, ended: Ended) -> None:
     own = ("--estimator", "mine:Guarded", "--set", "estimator.guard=true")
     code, _, stderr = ended(*LAB, *own, *INLINE)

@@ -73,10 +73,10 @@ def _origin(summary: Summary, drawn: int) -> str:
         "station": f"The station alone at {summary.transport}",
     }[summary.side]
     thinned = f"; {drawn} of {summary.ticks + 1} ticks are drawn" if drawn <= summary.ticks else ""
-    by = ", ".join(f"{name} {number}" for name, number in summary.versions.items())
+    versions = {"laglab": summary.laglab, **summary.versions}
+    by = ", ".join(f"{name} {number}" for name, number in versions.items())
     return (
-        f"{made}, plant {summary.plant}, seed {summary.seed}, by laglab {summary.laglab}, {by}"
-        f"{thinned}. "
+        f"{made}, plant {summary.plant}, seed {summary.seed}, by {by}{thinned}. "
         "The scenario below runs it again: laglab run FILE."
     )
 

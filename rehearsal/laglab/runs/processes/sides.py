@@ -74,8 +74,10 @@ def station_side(order: Order, tell: Tell) -> None:
         ):
             begun = True
             listener = Listener(endpoint, receiver)
-            run_station(station, listener, scenario.silence_timeout)
-        tell(Answered(station.report()))
+            try:
+                run_station(station, listener, scenario.silence_timeout)
+            finally:
+                tell(Answered(station.report()))
     except SIDE_ERRORS as error:
         tell(Failed(str(error), begun or isinstance(error, CUT_SHORT)))
 

@@ -147,7 +147,7 @@ class _Station:
             self._told, inputs = self._told.after(tick, told, recalled(answers, 0, tick))
             self._put_right(tick, inputs, record)
             to_drive = self._told.known - STOOD >= self._delay
-            self.has_seen_it_stand |= self._told.has_stood and to_drive
+            self.has_seen_it_stand |= self._told.has_stood(self._delay) and to_drive
         self._arrive(tick, measurements, record)
         record.keep(self._told, self._delay)
         return self._questions.ask(self._told, 0, tick, ROBOT)

@@ -18,8 +18,6 @@ from laglab.studies.sweep.study import Study
 from laglab.studies.sweep.work import Work, checked_work
 from laglab.studies.workers import Executor, Processes, as_done
 
-MOST_FAILED = 20
-"""So many failures are no accident: the rest would fail, too."""
 AHEAD = 512
 """Tasks that are handed out at once: as many as a large cluster has hands, and no more, so that
 memory always has room."""
@@ -96,8 +94,6 @@ def compute(
                 continue
             folder.keep(cell, content)
             told(len(cell.seeds), seconds(cell))
-        if len(failed) >= MOST_FAILED:
-            break
     if failed:
         others = f" (and {len(failed) - 1} more such)" if failed[1:] else ""
         raise RunError(
