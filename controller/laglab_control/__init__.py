@@ -5,15 +5,14 @@ A number in brackets, such as (28), is an equation of docs/theory.md, in this an
 
 from laglab_control.angle import wrap, wrapped
 from laglab_control.chi_square import chi_square_bound
-from laglab_control.controller import (
+from laglab_control.config import (
     FAR,
     INITIAL_VARIANCE,
-    Control,
-    Controller,
     StationConfig,
     is_far,
     without_blind_guard,
 )
+from laglab_control.controller import Control, Controller
 from laglab_control.errata import Erratum, PrintedController
 from laglab_control.errors import (
     ConfigError,

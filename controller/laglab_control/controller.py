@@ -1,16 +1,15 @@
 """Estimate, extrapolate, command: the remote station's part of a tick, without messages."""
 
-import math
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
+from laglab_control.config import StationConfig, is_far
 from laglab_control.doubt import doubt
-from laglab_control.errors import ConfigError, PluginError
+from laglab_control.errors import PluginError
 from laglab_control.estimators.brought import Brought
 from laglab_control.estimators.family import EstimatorKind, estimator_kind
 from laglab_control.estimators.interface import (
@@ -25,72 +24,10 @@ from laglab_control.estimators.interface import (
 from laglab_control.estimators.kalman import Belief, Innovation
 from laglab_control.flight import Echo, Flight, hear, send, take_off
 from laglab_control.guard import Alarm, Guard, Watched
-from laglab_control.laws import STAND_STILL, Demand, Law, PolarLaw, SpeedLimits, as_input
-from laglab_control.limits import Ticks, check, covariance, finite_pose
+from laglab_control.laws import STAND_STILL, Demand, as_input
 from laglab_control.model import Matrix, Vector
 from laglab_control.motion import Way, joined
-from laglab_control.robot import RobotModel, Ways
-
-INITIAL_VARIANCE = 1e-4
-"""P_0 = INITIAL_VARIANCE I by default [m^2, m^2, rad^2]."""
-FAR = 1000.0
-"""[m] No run leads a robot further from its goal: an estimate beyond this has gone astray."""
-
-
-def is_far(pose: Iterable[float], goal: Iterable[float]) -> bool:
-    """Whether a pose [m, m, rad] is not finite, or further than FAR from the goal."""
-    x, y, theta = pose
-    x_goal, y_goal, _ = goal
-    return not (math.isfinite(theta) and math.hypot(x - x_goal, y - y_goal) <= FAR)
-
-
-@dataclass(frozen=True, eq=False)
-class StationConfig:
-    """What the station is told. Poses [m, m, rad], delays in ticks.
-
-    `estimator` is one of ESTIMATORS, an installed plug-in, or `module:Class`. Raises PluginError
-    for one that cannot be had, and ConfigError, naming the field, for a value that cannot be.
-    """
-
-    estimator: str = "popf"
-    estimator_options: Mapping[str, object] = field(default_factory=dict)
-    """Of one that somebody brought, which is made as `Class(model, **options)`."""
-    model: RobotModel = field(default_factory=RobotModel)
-    law: Law = field(default_factory=PolarLaw)
-    limits: SpeedLimits = field(default_factory=SpeedLimits)
-    """Of the commands, whatever the law asks for."""
-    goal: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """What the run is about: whoever is FAR from it is lost."""
-    initial_estimate: ArrayLike = (0.0, 0.0, 0.0)
-    initial_covariance: ArrayLike = field(default_factory=lambda: np.eye(3) * INITIAL_VARIANCE)
-    command_delay: Ticks = 0
-    """n, until the echoes tell: it is then estimated from the command that each measurement
-    echoes. The delay m of a measurement is read from its own stamp."""
-    plan: Ticks = 0
-    """H: how many ticks are planned beyond each command."""
-    guard: bool = False
-    """Whether the estimator is watched (`Guard`)."""
-    first_tick: Ticks = 0
-    """The robot's tick that is the controller's tick 0: the law's time is the robot's."""
-
-    def __post_init__(self) -> None:
-        estimator_kind(self.estimator, self.estimator_options)
-        check(self)
-        x = finite_pose(self.initial_estimate, "initial_estimate")
-        P = covariance(self.initial_covariance, 3, "initial_covariance")
-        finite_pose(self.goal, "goal")
-        if is_far(x.tolist(), self.goal):
-            raise ConfigError(
-                f"initial_estimate must be within {FAR:g} m of the goal, not {x.tolist()}"
-            )
-        object.__setattr__(self, "initial_estimate", x)
-        object.__setattr__(self, "initial_covariance", P)
-
-
-def without_blind_guard(config: StationConfig) -> StationConfig:
-    """The same, unguarded if the estimator does not show how wild a measurement is."""
-    estimator = estimator_kind(config.estimator, config.estimator_options).make(config.model)
-    return config if estimator.is_watchable else replace(config, guard=False)
+from laglab_control.robot import Ways
 
 
 class Control(NamedTuple):

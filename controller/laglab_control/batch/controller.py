@@ -21,7 +21,7 @@ from laglab_control.batch.law import Demands, drive, limited, polar_law, stand_s
 from laglab_control.batch.matrices import Symmetric
 from laglab_control.batch.robots import Robots, diverged, prior_of
 from laglab_control.batch.rows import Pose, Speeds, headings
-from laglab_control.controller import StationConfig
+from laglab_control.config import StationConfig
 from laglab_control.errors import ConfigError
 from laglab_control.estimators.family import estimator_kind
 from laglab_control.laws import PolarLaw

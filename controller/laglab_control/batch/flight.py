@@ -7,7 +7,7 @@ import numpy as np
 from laglab_control.batch.odometry import Leg, Turn, at_origin, driven
 from laglab_control.batch.robots import joined
 from laglab_control.batch.rows import Heading, Pose, Speeds, headings
-from laglab_control.controller import StationConfig
+from laglab_control.config import StationConfig
 from laglab_control.motion import NOWHERE, Way
 from laglab_control.past.sliding import SlidingProduct
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from laglab_control.angle import wrapped
 from laglab_control.batch.matrices import Symmetric
 from laglab_control.batch.rows import Heading, Pose, Row, Speeds, headings
-from laglab_control.controller import StationConfig
+from laglab_control.config import StationConfig
 from laglab_control.errors import ConfigError
 from laglab_control.laws import PolarLaw, SpeedLimits
 

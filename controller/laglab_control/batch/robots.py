@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from laglab_control.batch import matrices
 from laglab_control.batch.matrices import Symmetric, covariance_of
 from laglab_control.batch.rows import Belief, Pose, Row, Speeds, difference, headings, pose_of
-from laglab_control.controller import FAR, StationConfig
+from laglab_control.config import FAR, StationConfig
 from laglab_control.errors import ConfigError
 from laglab_control.model import Matrix
 from laglab_control.motion import Motion, composed_along, joined_along

@@ -18,7 +18,7 @@ from laglab_control.batch.law import drive, limited, polar_law, stand_still
 from laglab_control.batch.matrices import Symmetric
 from laglab_control.batch.robots import Estimate, Robots, diverged, prior_of
 from laglab_control.batch.rows import Belief, Pose, Speeds, headings
-from laglab_control.controller import StationConfig
+from laglab_control.config import StationConfig
 from laglab_control.errors import ConfigError
 from laglab_control.estimators.family import estimator_kind
 from laglab_control.model import Matrix

@@ -15,8 +15,9 @@ from markupsafe import Markup
 from msgspec import Struct
 
 from laglab.results.link_view import Span
+from laglab.results.report.axes import Axes
 from laglab.results.report.plane import Plane, path_plot
-from laglab.results.report.plots import Axes, Plots, time_plots
+from laglab.results.report.plots import Plots, time_plots
 from laglab.results.report.sources import sources_of
 from laglab.results.report.tables import Tables
 from laglab.scenario import Scenario

@@ -1,14 +1,11 @@
 """The plots of a page over time: all share one axis of time, each kind one axis of its own."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
-from bokeh.model import Model
 from bokeh.models import (
     CDSView,
-    DataRange1d,
     FactorRange,
     GroupFilter,
     HoverTool,
@@ -21,6 +18,7 @@ from bokeh.plotting import figure
 
 from laglab.results.figures.style import BLUE, GREEN, ORANGE, RED, SKY
 from laglab.results.link_view import Span as Time
+from laglab.results.report.axes import Axes
 from laglab.results.report.sources import Sources
 from laglab.results.report.tables import LANES, marks
 from laglab.scenario import Scenario
@@ -42,23 +40,6 @@ TOOLS = "xpan,box_zoom,xwheel_zoom,reset,save"
 HEIGHT = 210
 LEFT = 84
 """[pixel] Left of a plot: what its numbers need later too, as a live page's do."""
-
-
-@dataclass
-class Axes:
-    """What the runs of a page share: an axis of time, and one of values for each kind of plot."""
-
-    time: DataRange1d = field(default_factory=lambda: DataRange1d(range_padding=0.01))
-    of: dict[str, DataRange1d] = field(default_factory=dict)
-
-    def follow(self, curves: Sequence[Model]) -> None:
-        """Time reaches as far as these do, too, whatever else is marked."""
-        before = self.time.renderers
-        self.time.renderers = [*(before if isinstance(before, list) else ()), *curves]
-
-    def values(self, kind: str) -> DataRange1d:
-        """The axis of all plots of this kind."""
-        return self.of.setdefault(kind, DataRange1d(only_visible=True))
 
 
 class Line(NamedTuple):
