@@ -44,7 +44,7 @@ from laglab_control.estimators import (
     WheelScales,
 )
 from laglab_control.estimators.kalman import normalised_squared
-from laglab_control.flight import STOOD, Echo, Told
+from laglab_control.flight import Echo, Told
 from laglab_control.guard import Alarm, Guard
 from laglab_control.laws import (
     LAWS,
@@ -82,7 +82,6 @@ __all__ = [
     "INITIAL_VARIANCE",
     "LAWS",
     "MEMORY",
-    "STOOD",
     "Alarm",
     "Applied",
     "Backdated",

@@ -36,14 +36,10 @@ class ControllerSession(Session):
 
     system, component = ROBOT_SYSTEM, ROBOT_COMPONENT
     peer = (STATION_SYSTEM, STATION_COMPONENT)
-    tick = 0
 
     def connect(self) -> None:
         if self.wait_for(Heartbeat, self.waits.appear) is None:
             raise NoReactionError("no HEARTBEAT came")
-
-    def leave(self) -> None:
-        self.say_end(self.tick)
 
     def stimulus(self) -> Message:
         return Tick(self.tick, 0)

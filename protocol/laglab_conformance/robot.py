@@ -46,7 +46,6 @@ class RobotSession(Session):
 
     system, component = STATION_SYSTEM, STATION_COMPONENT
     peer = (ROBOT_SYSTEM, ROBOT_COMPONENT)
-    tick = 0
     longest_delay = 0
     """Within so many exchanges after the one that took a command, a measurement tells of it."""
     plans = False
@@ -71,9 +70,6 @@ class RobotSession(Session):
                 self.tick = begun.tick
                 return
         raise NoReactionError("no LAGLAB_TICK, though a station sent heartbeats")
-
-    def leave(self) -> None:
-        self.say_end(self.tick)
 
     def stimulus(self) -> Message:
         return self.command(self.tick)

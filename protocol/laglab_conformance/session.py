@@ -48,6 +48,8 @@ class Session(ABC):
     system: int
     component: int
     peer: tuple[int, int]
+    tick = 0
+    """Of the next stimulus."""
 
     def __init__(self, endpoint: Endpoint, waits: Waits, key_file: Path | None) -> None:
         self.endpoint = endpoint
@@ -93,15 +95,11 @@ class Session(ABC):
     def go_on(self) -> None:
         """After a reaction: the next stimulus is another one."""
 
-    @abstractmethod
     def leave(self) -> None:
-        """Before its time: the peer is told that its run is over."""
-
-    def say_end(self, tick: int) -> None:
-        """The frame may be lost, so it comes thrice."""
+        """Early: the peer is told, thrice, for a frame may be lost, that its run is over."""
         with suppress(EndpointError):  # a link that is broken takes no last words
             for _ in range(3):
-                self.send(End(tick, EndReason.INTERRUPTED))
+                self.send(End(self.tick, EndReason.INTERRUPTED))
 
     def forged(self, message: Message | None = None) -> Forged:
         """The usual frame of a message, by default the stimulus, with the next number."""

@@ -11,7 +11,7 @@ from laglab.runs.inline import InlineLink
 from laglab.runs.robot_side import Setup, open_robot
 from laglab.runs.station_side import make_station
 from laglab.scenario import Scenario
-from laglab_control import STOOD
+from laglab_control.flight import STOOD
 from laglab_gateway import MemoryRecorder, Surroundings, Trace, TraceRow, trace_of
 from laglab_gateway.services import Arming
 from laglab_protocol import Listener, Receiver, Sender

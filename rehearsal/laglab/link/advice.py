@@ -30,7 +30,7 @@ def suggestions(fit: Fit, link: Path, replay: str) -> Iterator[str]:
             f"The fit is a poor one: its delays are {max(fit.distances):.2g} from those measured, "
             "which come in an order that no such link has: rather replay them."
         )
-    yield (f"Rehearse on the fitted link: laglab run {link}; on the very frames: {replay}.")
+    yield f"Rehearse on the fitted link: laglab run {link}; on the very frames: {replay}."
 
 
 def replaying(scenario: str, frames: Path, fixed: tuple[int, int], interval: float) -> str:

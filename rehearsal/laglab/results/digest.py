@@ -11,6 +11,7 @@ from laglab.results.numbers import (
     LAST_SECOND,
     RmsError,
     deviation,
+    goal_errors,
     is_measured,
     last_second,
     loop_estimates,
@@ -61,16 +62,10 @@ def followed(pieces: Iterable[Trace], of: Target, rows: int) -> Following | None
         return None
     first, count, squares, largest = rows // 2, 0, 0.0, 0.0
     for piece in pieces:
-        distance = _distance(piece, of)[max(first, 0) :]
+        distance = goal_errors(robot_pose(piece), of.poses(piece["tick"]))[0][max(first, 0) :]
         first -= len(piece["tick"])
         distance = distance[~np.isnan(distance)]
         count += len(distance)
         squares += float(distance @ distance)
         largest = max(largest, float(distance.max(initial=0.0)))
     return Following(float(np.sqrt(squares / count)), largest) if count else None
-
-
-def _distance(piece: Trace, of: Target) -> Array:
-    off = robot_pose(piece) - of.poses(piece["tick"])
-    distance: Array = np.hypot(off[:, 0], off[:, 1])
-    return distance

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from laglab.results.figures.style import BLACK, BLUE, GREY, ORANGE, PALE, SKY, Line, line
+from laglab.results.numbers import goal_errors
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,8 +46,7 @@ def draw_component(axes: Axes, shown: Shown, i: int) -> None:
 
 def draw_distance(axes: Axes, shown: Shown) -> None:
     """How far the robot is from where its path wanted it."""
-    off = shown.pose - shown.wanted
-    distance = np.hypot(off[:, 0], off[:, 1])
+    distance, _ = goal_errors(shown.pose, shown.wanted)
     axes.plot(shown.time, distance, color=BLACK, linewidth=0.9)
     axes.set_ylabel("to the path\n[m]")
     around(axes, distance, 0.0)

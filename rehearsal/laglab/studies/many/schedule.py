@@ -14,7 +14,7 @@ import numpy as np
 
 from laglab.runs.robot_side import link_fates
 from laglab.scenario import Scenario
-from laglab_control import MEMORY, STOOD, Applied, Told, Vector
+from laglab_control import MEMORY, Applied, Told, Vector
 from laglab_control.batch.impaired import Arrivals, Course, Missing, News, Tokens
 from laglab_gateway import Channel, Safety
 from laglab_gateway.drive import Drive, follow, rejection, speeds, supervise
@@ -146,8 +146,7 @@ class _Station:
             told = echoes(measurements, 0, tick)
             self._told, inputs = self._told.after(tick, told, recalled(answers, 0, tick))
             self._put_right(tick, inputs, record)
-            to_drive = self._told.known - STOOD >= self._delay
-            self.has_seen_it_stand |= self._told.has_stood(self._delay) and to_drive
+            self.has_seen_it_stand |= self._told.has_stood(self._delay)
         self._arrive(tick, measurements, record)
         record.keep(self._told, self._delay)
         return self._questions.ask(self._told, 0, tick, ROBOT)
