@@ -66,7 +66,8 @@ class Session(ABC):
         """Whether we have ended its run."""
         self._sequence = 0
         self._slowest = 0.0
-        self._listener = Listener(endpoint, self.receiver)
+        # A cable that was busy for a moment is no fault of the peer's.
+        self._listener = Listener(endpoint, self.receiver, silence=waits.refuse)
 
     @property
     def refusal(self) -> float:

@@ -19,25 +19,37 @@ class Listener:
     """
 
     def __init__(
-        self, link: Link, receiver: Receiver, now: Callable[[], float] = monotonic
+        self,
+        link: Link,
+        receiver: Receiver,
+        now: Callable[[], float] = monotonic,
+        silence: float = STREAM_SILENCE,
     ) -> None:
+        """`silence` [s]: what is unfinished on a stream is given up after it."""
         self.link = link
         self._receiver = receiver
         self._now = now
+        self._silence = silence
         self._last_byte = now()
         self.taken = 0
         """Bytes that came at the last `listen`."""
 
     def listen(self, timeout: float) -> list[Frame]:
         """The frames that are whole with what arrives within `timeout` [s]."""
+        if self.link.datagrams:
+            data = self._take(timeout)
+            return self._receiver.receive(data, whole=True) if data else []
+        until = self._now() + timeout
+        if data := self._take(timeout):
+            self._last_byte = self._now()
+            return self._receiver.receive(data)
+        # Silent until then, not until now: more may have come while we waited for the processor.
+        return self._receiver.receive(b"", whole=until - self._last_byte >= self._silence)
+
+    def _take(self, timeout: float) -> bytes:
         data = self.link.receive(timeout)
         self.taken = len(data)
-        if self.link.datagrams:
-            return self._receiver.receive(data, whole=True) if data else []
-        now = self._now()
-        if data:
-            self._last_byte = now
-        return self._receiver.receive(data, whole=now - self._last_byte >= STREAM_SILENCE)
+        return data
 
     def forget(self) -> None:
         """Pass over all that has arrived so far."""

@@ -43,6 +43,39 @@ def test_on_a_stream_only_a_real_silence_gives_a_false_start_up() -> None:
     assert found.message == Tick(7, 0)
 
 
+def test_what_came_while_one_waited_for_the_processor_is_no_silence() -> None:
+    time = 0.0
+
+    class Late(Line):
+        def receive(self, timeout: float) -> bytes:
+            nonlocal time
+            time += timeout + 3.0 * STREAM_SILENCE
+            return super().receive(timeout)
+
+    line = Late(datagrams=False)
+    listener = Listener(line, Receiver(), now=lambda: time)
+    frame = Sender(1, 1).frame(Tick(7, 0))
+    line.inbox = [frame[:9]]
+    assert listener.listen(0.01) == []
+    assert listener.listen(0.01) == []
+    line.inbox = [frame[9:]]
+    assert [each.message for each in listener.listen(0.01)] == [Tick(7, 0)]
+
+
+def test_who_judges_the_far_end_waits_longer_for_the_rest_of_a_frame() -> None:
+    """A cable that was busy for a moment is no fault of the peer's."""
+    time = 0.0
+    line = Line(datagrams=False)
+    listener = Listener(line, Receiver(), now=lambda: time, silence=0.4)
+    frame = Sender(1, 1).frame(Tick(7, 0))
+    line.inbox = [frame[:9]]
+    assert listener.listen(0.0) == []
+    time = 0.39
+    assert listener.listen(0.0) == []
+    line.inbox = [frame[9:]]
+    assert [each.message for each in listener.listen(0.0)] == [Tick(7, 0)]
+
+
 def test_a_datagram_is_a_unit() -> None:
     line = Line(datagrams=True)
     listener = Listener(line, Receiver())
