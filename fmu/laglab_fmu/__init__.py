@@ -18,7 +18,8 @@ from laglab_fmu.errors import (
     FmuNotBuiltError,
     WiringError,
 )
-from laglab_fmu.parameters import INTEGRATIONS, Reading, RobotParameters
+from laglab_fmu.others import OtherParameters
+from laglab_fmu.parameters import INTEGRATIONS, Parameters, Reading, RobotParameters
 
 if TYPE_CHECKING:
     from laglab_fmu.archive.build import build_fmus
@@ -40,6 +41,8 @@ __all__ = [
     "FmuError",
     "FmuFileError",
     "FmuNotBuiltError",
+    "OtherParameters",
+    "Parameters",
     "Reading",
     "Robot",
     "RobotParameters",

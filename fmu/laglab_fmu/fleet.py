@@ -7,15 +7,16 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from laglab_fmu.parameters import RobotParameters
+from laglab_fmu.models import Model, model_named
+from laglab_fmu.parameters import Parameters
 from laglab_fmu.slave import Slave3, fleet_path
-from laglab_fmu.stepper import INPUTS, OUTPUTS, Stepper
+from laglab_fmu.stepper import OUTPUTS, Stepper
 
 Array = npt.NDArray[np.float64]
 
 
 class Fleet(Stepper):
-    """Fleet3.fmu in co-simulation: `with Fleet.open([parameters, ...]) as fleet:`.
+    """Many robots of one model in co-simulation: `with Fleet.open([parameters, ...]) as fleet:`.
 
     Attributes:
         readings: (robots, 8), columns as in `Reading`; each step writes it anew.
@@ -25,19 +26,22 @@ class Fleet(Stepper):
     """
 
     @classmethod
-    def open(cls, robots: Sequence[RobotParameters]) -> Self:
-        """Robots at their start poses, tick 0 sampled; robot i moves as a `Robot` of robots[i].
+    def open(cls, robots: Sequence[Parameters]) -> Self:
+        """Robots at their start poses, tick 0 sampled; robot i moves as one alone of robots[i].
 
         Raises:
-            ValueError: no robots, or their sample times differ; no such integration or seed.
+            ValueError: no robots, or their models or sample times differ; no such integration,
+                seed or name.
             FmuNotBuiltError: the FMU is not there.
             CallError: it does not start, or refuses a parameter.
         """
         return cls(robots)
 
-    def __init__(self, robots: Sequence[RobotParameters]) -> None:
-        super().__init__(fleet_path(), partial(Slave3, fleet=True), robots)
-        self._speeds: Array = np.zeros((len(INPUTS), len(robots))).T
+    def __init__(self, robots: Sequence[Parameters]) -> None:
+        model = self._model = common_model(robots)
+        make = partial(Slave3, model=model, fleet=True)
+        super().__init__(fleet_path(model.name), make, robots, model.inputs)
+        self._speeds: Array = np.zeros((len(model.inputs), len(robots))).T
         self.readings: Array = np.zeros((len(OUTPUTS), len(robots))).T
         self.outputs.value = self.readings.ctypes.data
         self.fetch()
@@ -46,8 +50,9 @@ class Fleet(Stepper):
         """Moves all robots for one sample time and gives `readings`.
 
         Args:
-            speeds: (robots, 2), left and right wheel speeds in rad/s. The FMU reads a column-major
-                array of float64 (numpy's order="F") where it lies; any other is copied first.
+            speeds: (robots, 2), of a `Robot` its left and right wheel's in rad/s, of others v in
+                m/s and omega in rad/s. The FMU reads a column-major array of float64 (numpy's
+                order="F") where it lies; any other is copied first.
 
         Raises:
             ValueError: speeds of another shape.
@@ -62,14 +67,24 @@ class Fleet(Stepper):
         self.advance()
         return self.readings
 
-    def reset(self, robots: Sequence[RobotParameters]) -> None:
+    def reset(self, robots: Sequence[Parameters]) -> None:
         """Starts again with as many robots, without loading anything anew.
 
         Raises:
-            ValueError: another number of robots, or sample times that differ.
+            ValueError: another number or model of robots, or sample times that differ.
             CallError: the FMU refuses a parameter; reset again with better ones.
         """
         if len(robots) != len(self.readings):
             raise ValueError(f"{len(robots)} robots for a fleet of {len(self.readings)}")
+        if (model := common_model(robots)) is not self._model:
+            raise ValueError(f"{model.name} for a fleet of {self._model.name}")
         self.restart(robots)
         self.fetch()
+
+
+def common_model(robots: Sequence[Parameters]) -> Model:
+    """What all the robots are. Raises ValueError: there is no robot, or they differ."""
+    models = {robot.model for robot in robots}
+    if len(models) != 1:
+        raise ValueError(f"{len(robots)} robots are of {len(models)} models, not of one")
+    return model_named(models.pop())

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple, Protocol
 
 INTEGRATIONS = (
     ("euler", "One Euler step per sample, equation (3)"),
@@ -12,6 +12,21 @@ INTEGRATIONS = (
 LARGEST_SEED = 2**31 - 1
 
 
+class Parameters(Protocol):
+    """Of one robot of any model that ships."""
+
+    @property
+    def model(self) -> str:
+        """The name of its FMUs, without the version of FMI."""
+
+    @property
+    def sample_time(self) -> float:
+        """[s]."""
+
+    def by_name(self) -> Mapping[str, float]:
+        """All of them by the FMU's names, as numbers. Raises ValueError: one cannot be."""
+
+
 @dataclass(frozen=True)
 class RobotParameters:
     """Parameters of one robot, SI units. By default the paper's, with every realism option off.
@@ -19,6 +34,7 @@ class RobotParameters:
     The defaults stand here alone: the model descriptions take their start values from them.
     """
 
+    model: ClassVar[str] = "Robot"
     wheel_radius: float = 0.05
     track: float = 0.6
     sample_time: float = 0.01

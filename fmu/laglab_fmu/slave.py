@@ -9,7 +9,7 @@ import os
 import secrets
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
@@ -22,27 +22,24 @@ from fmpy.fmi3 import FMU3Slave
 
 from laglab_fmu.compiler import host_platform
 from laglab_fmu.errors import CallError, FmuNotBuiltError
-from laglab_fmu.models import FLEET_NAME, ROBOT, Kind, Role, token
-from laglab_fmu.parameters import RobotParameters, values
+from laglab_fmu.models import ROBOT, Kind, Model, Role, model_named, token
+from laglab_fmu.parameters import Parameters, values
 
 VERSIONS = (2, 3)
 
 
-def _parameters(*kinds: Kind) -> list[str]:
-    return [v.name for v in ROBOT.variables if v.role is Role.PARAMETER and v.kind in kinds]
-
-
 _SETTERS_2 = {
-    "setReal": _parameters(Kind.FLOAT64),
-    "setInteger": _parameters(Kind.INT32, Kind.ENUMERATION),
-    "setBoolean": _parameters(Kind.BOOLEAN),
+    "setReal": (Kind.FLOAT64,),
+    "setInteger": (Kind.INT32, Kind.ENUMERATION),
+    "setBoolean": (Kind.BOOLEAN,),
 }
 _SETTERS_3 = {
-    "setFloat64": _parameters(Kind.FLOAT64),
-    "setInt32": _parameters(Kind.INT32),
-    "setInt64": _parameters(Kind.ENUMERATION),
-    "setBoolean": _parameters(Kind.BOOLEAN),
+    "setFloat64": (Kind.FLOAT64,),
+    "setInt32": (Kind.INT32,),
+    "setInt64": (Kind.ENUMERATION,),
+    "setBoolean": (Kind.BOOLEAN,),
 }
+"""FMPy's method for parameters of which kinds."""
 Call = Callable[[], int]
 """An FMI function with all its arguments; gives its status, 0 when it did what it was asked."""
 
@@ -59,13 +56,14 @@ def fmu_path(version: int, name: str = ROBOT.name) -> Path:
     return built(f"{name}{version}.fmu")
 
 
-def fleet_path() -> Path:
-    """The installed Fleet3.fmu.
+def fleet_path(name: str = ROBOT.name) -> Path:
+    """The installed Fleet3.fmu, or another robot's: CarFleet3.fmu, OmniFleet3.fmu.
 
     Raises:
+        ValueError: no robot that ships is called so.
         FmuNotBuiltError: it is not there.
     """
-    return built(f"{FLEET_NAME}3.fmu")
+    return built(f"{model_named(name).fleet}3.fmu")
 
 
 def built(name: str) -> Path:
@@ -84,7 +82,7 @@ class Slave(Protocol):
     log: list[str]
     """What the FMU has logged."""
 
-    def initialize(self, robots: Sequence[RobotParameters]) -> None: ...
+    def initialize(self, robots: Sequence[Parameters]) -> None: ...
     def reset(self) -> None: ...
     def free(self) -> None: ...
     def setter(self, names: Sequence[str], array: ctypes.c_void_p, size: int) -> Call: ...
@@ -93,7 +91,7 @@ class Slave(Protocol):
 
 
 class Slave2:
-    """FMI 2.0: one robot."""
+    """FMI 2.0: one robot, the differential drive."""
 
     def __init__(self, folder: str) -> None:
         platform = host_platform()
@@ -113,10 +111,8 @@ class Slave2:
     def _logged(self, _where: Any, _name: bytes, _status: int, _kind: bytes, text: bytes) -> None:
         self.log.append(text.decode().replace("%%", "%"))
 
-    def initialize(self, robots: Sequence[RobotParameters]) -> None:
-        rows = [robot.by_name() for robot in robots]
-        for setter, names in _SETTERS_2.items():
-            getattr(self.fmu, setter)(_references(names), values(rows, names))
+    def initialize(self, robots: Sequence[Parameters]) -> None:
+        _set_parameters(self.fmu, ROBOT, _SETTERS_2, robots)
         self.fmu.setupExperiment(startTime=0.0)
         self.fmu.enterInitializationMode()
         self.fmu.exitInitializationMode()
@@ -128,10 +124,10 @@ class Slave2:
         self.fmu.freeInstance()
 
     def setter(self, names: Sequence[str], array: ctypes.c_void_p, _size: int) -> Call:
-        return self._call("fmi2SetReal", *_counted(names), array)
+        return self._call("fmi2SetReal", *_counted(ROBOT, names), array)
 
     def getter(self, names: Sequence[str], array: ctypes.c_void_p, _size: int) -> Call:
-        return self._call("fmi2GetReal", *_counted(names), array)
+        return self._call("fmi2GetReal", *_counted(ROBOT, names), array)
 
     def stepper(self, time: ctypes.c_double, step: ctypes.c_double) -> Call:
         return self._call("fmi2DoStep", time, step, ctypes.c_int(1))
@@ -143,10 +139,10 @@ class Slave2:
 class Slave3:
     """FMI 3.0: one robot or a fleet."""
 
-    def __init__(self, folder: str, fleet: bool = False) -> None:
+    def __init__(self, folder: str, model: Model = ROBOT, fleet: bool = False) -> None:
         self.log: list[str] = []
-        self.fleet = fleet
-        name = FLEET_NAME if fleet else ROBOT.name
+        self.model, self.fleet = model, fleet
+        name = model.fleet if fleet else model.name
         self.fmu = FMU3Slave(guid=token(f"{name}3"), modelIdentifier=name, unzipDirectory=folder)
         with _unloading_on_failure(self.fmu):
             self.fmu.instantiate(logMessage=self._logged)
@@ -154,14 +150,12 @@ class Slave3:
     def _logged(self, _environment: Any, _status: int, _category: bytes, message: bytes) -> None:
         self.log.append(message.decode())
 
-    def initialize(self, robots: Sequence[RobotParameters]) -> None:
+    def initialize(self, robots: Sequence[Parameters]) -> None:
         if self.fleet:
             self.fmu.enterConfigurationMode()
-            self.fmu.setUInt64(_references(["robots"]), [len(robots)])
+            self.fmu.setUInt64([self.model.reference["robots"]], [len(robots)])
             self.fmu.exitConfigurationMode()
-        rows = [robot.by_name() for robot in robots]
-        for setter, names in _SETTERS_3.items():
-            getattr(self.fmu, setter)(_references(names), values(rows, names))
+        _set_parameters(self.fmu, self.model, _SETTERS_3, robots)
         self.fmu.enterInitializationMode(startTime=0.0)
         self.fmu.exitInitializationMode()
 
@@ -178,7 +172,7 @@ class Slave3:
         return self._on_array("fmi3GetFloat64", names, array, size)
 
     def _on_array(self, call: str, names: Sequence[str], array: ctypes.c_void_p, size: int) -> Call:
-        return self._call(call, *_counted(names), array, ctypes.c_size_t(size))
+        return self._call(call, *_counted(self.model, names), array, ctypes.c_size_t(size))
 
     def stepper(self, time: ctypes.c_double, step: ctypes.c_double) -> Call:
         flags = [ctypes.byref(ctypes.c_bool()) for _ in range(3)]
@@ -189,12 +183,26 @@ class Slave3:
         return partial(self.fmu.dll[name], ctypes.c_void_p(self.fmu.component), *arguments)
 
 
-def _references(names: Sequence[str]) -> list[int]:
-    return [ROBOT.reference[name] for name in names]
+def _set_parameters(
+    fmu: FMU2Slave | FMU3Slave,
+    model: Model,
+    setters: Mapping[str, Sequence[Kind]],
+    robots: Sequence[Parameters],
+) -> None:
+    rows = [robot.by_name() for robot in robots]
+    for setter, kinds in setters.items():
+        parameters = [v for v in model.variables if v.role is Role.PARAMETER and v.kind in kinds]
+        names = [each.name for each in parameters]
+        getattr(fmu, setter)(_references(model, names), values(rows, names))
 
 
-def _counted(names: Sequence[str]) -> tuple[Any, ctypes.c_size_t]:
-    return (ctypes.c_uint32 * len(names))(*_references(names)), ctypes.c_size_t(len(names))
+def _references(model: Model, names: Sequence[str]) -> list[int]:
+    return [model.reference[name] for name in names]
+
+
+def _counted(model: Model, names: Sequence[str]) -> tuple[Any, ctypes.c_size_t]:
+    references = _references(model, names)
+    return (ctypes.c_uint32 * len(names))(*references), ctypes.c_size_t(len(names))
 
 
 @contextmanager
@@ -246,7 +254,7 @@ def _is_needed(name: str) -> bool:
     return name.startswith(own)
 
 
-def initialize(slave: Slave, robots: Sequence[RobotParameters]) -> None:
+def initialize(slave: Slave, robots: Sequence[Parameters]) -> None:
     """Gives a fresh or reset instance its parameters and starts it.
 
     Raises:

@@ -7,10 +7,11 @@ from pathlib import Path
 from typing import Self
 
 from laglab_fmu.errors import CallError
-from laglab_fmu.parameters import Reading, RobotParameters
+from laglab_fmu.models import ROBOT
+from laglab_fmu.parameters import Parameters, Reading
 from laglab_fmu.slave import Slave, initialize, open_slave
 
-INPUTS = ("omega_left", "omega_right")
+INPUTS = ROBOT.inputs
 OUTPUTS = Reading._fields
 
 
@@ -22,7 +23,11 @@ class Stepper:
     """
 
     def __init__(
-        self, path: Path, make: Callable[[str], Slave], robots: Sequence[RobotParameters]
+        self,
+        path: Path,
+        make: Callable[[str], Slave],
+        robots: Sequence[Parameters],
+        inputs: Sequence[str] = INPUTS,
     ) -> None:
         sample_time = common_sample_time(robots)
         with ExitStack() as stack:
@@ -33,7 +38,7 @@ class Stepper:
         self._tick = 0
         self._sample_time = sample_time
         self._time, self._step_size = ctypes.c_double(), ctypes.c_double(sample_time)
-        self._set = self._slave.setter(INPUTS, self.inputs, len(INPUTS) * len(robots))
+        self._set = self._slave.setter(inputs, self.inputs, len(inputs) * len(robots))
         self._step = self._slave.stepper(self._time, self._step_size)
         self._get = self._slave.getter(OUTPUTS, self.outputs, len(OUTPUTS) * len(robots))
 
@@ -62,7 +67,7 @@ class Stepper:
         self._slave.log.clear()
         return CallError(f"tick {self._tick}: {message}")
 
-    def restart(self, robots: Sequence[RobotParameters]) -> None:
+    def restart(self, robots: Sequence[Parameters]) -> None:
         """Starts again with other parameters, without loading anything anew.
 
         Raises:
@@ -91,7 +96,7 @@ def _closed() -> int:
     raise CallError("the FMU instance has been closed; open another")
 
 
-def common_sample_time(robots: Sequence[RobotParameters]) -> float:
+def common_sample_time(robots: Sequence[Parameters]) -> float:
     """The sample time of all the robots.
 
     Raises:

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
 
-from laglab_fmu import CallError, Fleet, Robot, RobotParameters
+from laglab_fmu import OUTPUTS, CallError, Fleet, OtherParameters, Robot, RobotParameters, fmu_path
+from laglab_fmu.foreign import FmuFile, ForeignRobot, Wiring
 from laglab_fmu.models import ROBOT
 
 ROBOTS = [
@@ -31,6 +32,47 @@ def test_robot_i_equals_a_single_robot_bit_for_bit() -> None:
             assert tuple(history[0][i]) == robot.read()
             for tick in range(TICKS):
                 assert tuple(history[tick + 1][i]) == robot.step(*speeds(tick)[i])
+
+
+OTHERS = {
+    "Car": {"steering_time_constant": 0.2, "integration": 2},
+    "Omni": {"first_wheel_error": -0.01, "motor_time_constant": 0.05, "noise": True},
+}
+
+
+@pytest.mark.parametrize("model", OTHERS)
+def test_so_are_those_of_the_others(model: str) -> None:
+    own = [{**OTHERS[model], "seed": 3 * i, "theta_start": 0.5 * i} for i in range(7)]
+    with Fleet.open([OtherParameters(model, each) for each in own]) as fleet:
+        history = [fleet.readings.copy()]
+        history += [fleet.step(speeds(tick)).copy() for tick in range(TICKS)]
+    inputs = {"v": "v_command", "omega": "omega_command"}
+    file = FmuFile.read(fmu_path(3, model))
+    for i, parameters in enumerate(own):
+        wiring = Wiring(inputs, {name: name for name in OUTPUTS}, parameters=parameters)
+        with ForeignRobot(file, wiring, 0.01) as robot:
+            assert tuple(history[0][i]) == robot.outputs
+            for tick in range(TICKS):
+                assert tuple(history[tick + 1][i]) == robot.step(speeds(tick)[i].tolist())
+
+
+def test_a_fleet_is_of_one_model_with_parameters_that_it_has() -> None:
+    car = OtherParameters("Car", {})
+    assert car.sample_time == 0.01
+    with pytest.raises(ValueError, match="2 robots are of 2 models, not of one"):
+        Fleet.open([car, OtherParameters("Omni", {})])
+    with pytest.raises(ValueError, match="Plane is none of Robot, Car, Omni"):
+        Fleet.open([OtherParameters("Plane", {})])
+    with pytest.raises(CallError, match="Car has no parameter track"):
+        Fleet.open([OtherParameters("Car", {"track": 0.3})])
+    with pytest.raises(CallError, match="wheelbase = 'long' refused: it is no number"):
+        Fleet.open([OtherParameters("Car", {"wheelbase": "long"})])
+    with pytest.raises(CallError, match=r"integration = 1.5 refused: it is no whole number"):
+        Fleet.open([OtherParameters("Car", {"integration": 1.5})])
+    with pytest.raises(CallError, match="wheelbase = -1 refused"):
+        Fleet.open([OtherParameters("Car", {"wheelbase": -1.0})])
+    with Fleet.open([car]) as fleet, pytest.raises(ValueError, match="Omni for a fleet of Car"):
+        fleet.reset([OtherParameters("Omni", {})])
 
 
 def test_nothing_is_copied() -> None:

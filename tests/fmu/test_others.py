@@ -17,7 +17,7 @@ from laglab_fmu.models import MODELS, Model
 
 TS = 0.01
 STATES = ("x", "y", "theta")
-OTHERS = ("Car2", "Car3", "Omni2", "Omni3")
+OTHERS = ("Car2", "Car3", "CarFleet3", "Omni2", "Omni3", "OmniFleet3")
 Parameters = dict[str, Value]
 
 
@@ -59,7 +59,7 @@ def test_its_documentation_is_its_own(extracted: dict[str, Path], model: Model) 
     page = (extracted[f"{model.name}3"] / "documentation" / "index.html").read_text()
     assert f"<title>{model.name}</title>" in page
     assert model.description in page
-    assert ("Fleet3.fmu" in page) == model.has_fleet
+    assert f"<code>{model.fleet}3.fmu</code>" in page
     named = set(re.findall(r"<code>(\w+_\w+)</code>", page))
     assert named <= {variable.name for variable in model.variables}
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from laglab import load, run
-from laglab.errors import RefusedError, ScenarioError, StudyError
+from laglab.errors import RefusedError, RunError, ScenarioError, StudyError
 from laglab.runs.plant import open_plant
 from laglab.studies.many import why_one_by_one
 from laglab.studies.sweep.loading import load_study
@@ -96,8 +96,24 @@ def test_another_fmu_of_that_name_is_another_study(tmp_path: Path, library: Path
     assert not set(before) & set(after)
 
 
-@pytest.mark.parametrize("kind", ["car", "omni", "ice:Skater"])
-def test_there_is_no_fleet_of_others(kind: str) -> None:
-    said = f"of {kind} there is one a run, and no fleet (plant)"
-    assert why_one_by_one(load("lab", {"plant.kind": kind})) == said
-    assert why_one_by_one(load("lab")) is None
+@pytest.mark.parametrize("kind", ["robot", "car", "omni"])
+def test_there_is_a_fleet_of_each_of_ours(kind: str) -> None:
+    assert why_one_by_one(load("lab", {"plant.kind": kind})) is None
+
+
+def test_there_is_none_of_others() -> None:
+    said = "of ice:Skater there is one a run, and no fleet (plant)"
+    assert why_one_by_one(load("lab", {"plant.kind": "ice:Skater"})) == said
+    said = "what is no number is told to one at a time (plant.parameters)"
+    told = {"plant.kind": "car", "plant.parameters.wheelbase": "0.5"}
+    assert why_one_by_one(load("lab", told)) == said
+
+
+def test_what_the_fmu_refuses_is_named_by_its_place_in_the_grid(tmp_path: Path) -> None:
+    path = study(tmp_path, 'kind = "car"')
+    text = path.read_text().replace("[grid]", '[grid]\n"plant.parameters.wheelbase" = [0.5, -1.0]')
+    path.write_text(text)
+    refused = r"own: plant.parameters.wheelbase = -1.0, link.command_delay = [05]: .* refused: .*"
+    with Processes(1) as workers, pytest.raises(RunError, match=refused + r"\(and 1 more such\)"):
+        swept(str(path), workers, tmp_path / "out", False, 100)
+    assert len(list((tmp_path / "out" / "cells").iterdir())) == 2

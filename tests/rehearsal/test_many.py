@@ -16,6 +16,7 @@ QUIET = [
     ("fig6", {"estimator.kind": "delayed-ekf", "duration": 4.0}),
     ("fig6", {"link.command_delay": 0, "link.measurement_delay": 0, "duration": 3.0}),
     ("lab", {"noise": False, "duration": 4.0}),
+    ("lab-omni", {"noise": False, "estimator.guard": False, "duration": 4.0}),
 ]
 NOISY = [
     ("lab", {}),
@@ -27,6 +28,8 @@ NOISY = [
     ("lab", {"link.measurement_delay": 0}),
     ("lab", {"law.accel_max": 1.0, "law.alpha_max": 4.0}),
     ("lab-real", {"estimator.guard": False, "plant.integration": "exact"}),
+    ("lab", {"estimator.guard": False, "plant.kind": "car", "plant.integration": "exact"}),
+    ("lab-omni", {"estimator.guard": False, "plant.measurement_variance": [0.02, 0.01, 0.001]}),
 ]
 
 

@@ -62,6 +62,12 @@ def test_with_noise_over_the_first_seconds(link, kind):
     assert furthest(many, 1, laglab.run(scenarios[1])) < SHARP
 
 
+def test_other_robots_are_no_exception():
+    car = {"plant.kind": "car", "plant.parameters.steering_time_constant": 0.3, **FREE}
+    scenario = station("delayed-ekf", "losses and jitter", **car, duration=3.0)
+    assert furthest(kept([scenario]), 0, laglab.run(scenario)) < SHARP
+
+
 @pytest.mark.parametrize(("link", "kind"), QUIET)
 def test_without_noise_over_the_whole_run(link, kind):
     scenario = station(kind, link, noise=False, duration=6.0)

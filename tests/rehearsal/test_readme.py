@@ -86,9 +86,11 @@ def test_a_bare_clone_installs_and_runs(bare_clone: Path) -> None:
     assert sorted(path.name for path in (bare_clone / "built").iterdir()) == [
         "Car2.fmu",
         "Car3.fmu",
+        "CarFleet3.fmu",
         "Fleet3.fmu",
         "Omni2.fmu",
         "Omni3.fmu",
+        "OmniFleet3.fmu",
         "Robot2.fmu",
         "Robot3.fmu",
     ]

@@ -22,7 +22,7 @@ ZIP_DATE = (1980, 1, 1, 0, 0, 0)
 
 
 def build_fmus(directory: Path, platforms: Sequence[Platform] = ()) -> list[Path]:
-    """Builds the FMUs of every robot that ships, of FMI 2 and 3, and Fleet3.fmu, in a directory.
+    """Builds the FMUs of every robot that ships, of FMI 2 and 3 and of many, in a directory.
 
     Args:
         directory: where the FMUs go; made if missing.

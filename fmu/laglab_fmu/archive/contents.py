@@ -14,7 +14,7 @@ from laglab_fmu.archive.description import model_description_2, model_descriptio
 from laglab_fmu.archive.header import variables_header
 from laglab_fmu.compiler import Platform
 from laglab_fmu.errors import BuildError
-from laglab_fmu.models import FLEET_NAME, ROBOT, Model, Role, Variable, model_of, token
+from laglab_fmu.models import ROBOT, Model, Role, Variable, model_of, token
 from laglab_fmu.models.units import TYPES
 
 HEADERS = {
@@ -51,8 +51,7 @@ def c_files(model: Model = ROBOT) -> dict[str, bytes]:
     files = {
         path.name: path.read_bytes() for each in folders for path in sorted(each.glob("*.[ch]"))
     }
-    tokens = dict(zip(("TOKEN_2", "TOKEN_3", "TOKEN_FLEET"), map(token, model.fmus), strict=False))
-    tokens.setdefault("TOKEN_FLEET", f"{{no fleet of {model.name}}}")
+    tokens = dict(zip(("TOKEN_2", "TOKEN_3", "TOKEN_FLEET"), map(token, model.fmus), strict=True))
     return files | {"variables.h": variables_header(model.variables, tokens).encode()}
 
 
@@ -68,14 +67,14 @@ def fmu_contents(name: str, binaries: Mapping[Platform, bytes]) -> dict[str, byt
         BuildError: a source, or the licence of the headers, is missing.
     """
     identifier, version = name[:-1], int(name[-1])
-    model, fleet = model_of(name), identifier == FLEET_NAME
+    model = model_of(name)
     sources = _sources(model, version)
     names = sorted(source for source in sources if source.endswith(".c"))
     files = {f"sources/{source}": text for source, text in sources.items()}
     if version == 2:
         files["modelDescription.xml"] = model_description_2(model, names)
     else:
-        files["modelDescription.xml"] = model_description_3(model, fleet)
+        files["modelDescription.xml"] = model_description_3(model, fleet=identifier == model.fleet)
         files["sources/buildDescription.xml"] = _build_description(identifier, names)
     for platform, library in binaries.items():
         folder = platform.fmi2_folder if version == 2 else platform.fmi3_folder
@@ -112,7 +111,11 @@ def _documentation(model: Model) -> dict[str, bytes]:
     )
     return {
         "documentation/index.html": page.substitute(
-            name=model.name, description=model.description, motion=motion.rstrip(), rows=rows
+            name=model.name,
+            description=model.description,
+            motion=motion.rstrip(),
+            fleet=model.fleet,
+            rows=rows,
         ).encode(),
         "documentation/licenses/license.txt": (content / "license.txt").read_bytes(),
         "documentation/licenses/fmi-headers.txt": _header_licence(),

@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 from laglab_fmu.archive.structure import structure_2, structure_3
-from laglab_fmu.models import FLEET_NAME, Kind, Model, Role, Variable, token
+from laglab_fmu.models import Kind, Model, Role, Variable, token
 from laglab_fmu.models.units import TYPES, UNITS, DeclaredType, Unit
 from laglab_fmu.models.variables import START
 from laglab_fmu.parameters import INTEGRATIONS
@@ -88,7 +88,7 @@ def model_description_2(model: Model, sources: Sequence[str]) -> bytes:
 
 def model_description_3(model: Model, fleet: bool = False) -> bytes:
     """modelDescription.xml of FMI 3.0: one robot, or arrays of `robots`."""
-    name = FLEET_NAME if fleet else model.name
+    name = model.fleet if fleet else model.name
     root = Element(
         "fmiModelDescription",
         fmiVersion="3.0",

@@ -9,9 +9,7 @@ from laglab_fmu.models.car import CAR
 from laglab_fmu.models.differential import DIFFERENTIAL
 from laglab_fmu.models.omni import OMNI
 from laglab_fmu.models.units import TYPES, UNITS
-from laglab_fmu.models.variables import Variable
-
-FLEET_NAME = "Fleet"
+from laglab_fmu.models.variables import Role, Variable
 
 
 @dataclass(frozen=True)
@@ -20,11 +18,12 @@ class Model:
 
     name: str
     """Its FMUs' name without the version of FMI, and their model identifier."""
+    fleet: str
+    """The same of the FMU of many at once."""
     folder: str
     """Of its C files, in `src/robots`; for readers, `content/robots` has how it moves."""
     description: str
     variables: Sequence[Variable]
-    has_fleet: bool = False
 
     @cached_property
     def reference(self) -> Mapping[str, int]:
@@ -34,27 +33,46 @@ class Model:
     @property
     def fmus(self) -> tuple[str, ...]:
         """The names of its FMUs: each is a model name and the version of FMI."""
-        own = (f"{self.name}2", f"{self.name}3")
-        return (*own, f"{FLEET_NAME}3") if self.has_fleet else own
+        return f"{self.name}2", f"{self.name}3", f"{self.fleet}3"
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """The names of what it is told at every tick."""
+        return tuple(each.name for each in self.variables if each.role is Role.INPUT)
+
+    @cached_property
+    def start(self) -> Mapping[str, float]:
+        """Its parameters' start values by name."""
+        return {each.name: each.start for each in self.variables if each.role is Role.PARAMETER}
 
 
 ROBOT = Model(
     "Robot",
+    "Fleet",
     "differential",
     "A differential-drive robot with wheel and sensor noise",
     DIFFERENTIAL,
-    has_fleet=True,
 )
 MODELS = (
     ROBOT,
-    Model("Car", "car", "A car-like robot, whose steering lags, with noise", CAR),
-    Model("Omni", "omni", "An omnidirectional robot on three wheels, with noise", OMNI),
+    Model("Car", "CarFleet", "car", "A car-like robot, whose steering lags, with noise", CAR),
+    Model(
+        "Omni", "OmniFleet", "omni", "An omnidirectional robot on three wheels, with noise", OMNI
+    ),
 )
 
 
 def model_of(fmu: str) -> Model:
     """The robot whose FMU that is, such as Robot2."""
     return next(model for model in MODELS if fmu in model.fmus)
+
+
+def model_named(name: str) -> Model:
+    """The robot of that name. Raises ValueError: none that ships has it."""
+    for model in MODELS:
+        if model.name == name:
+            return model
+    raise ValueError(f"{name} is none of {', '.join(each.name for each in MODELS)}")
 
 
 def token(fmu: str) -> str:

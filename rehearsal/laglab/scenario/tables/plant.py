@@ -233,11 +233,6 @@ class PlantTable(Table):
         return self.fmu is None and self.kind in SHIPPED
 
     @property
-    def has_fleet(self) -> bool:
-        """Whether many of it can be stepped at once."""
-        return self.fmu is None and self.kind == "robot"
-
-    @property
     def called(self) -> str:
         """Its name, for messages."""
         return self.fmu.name if self.fmu is not None else self.kind

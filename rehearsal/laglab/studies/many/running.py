@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab.runs.plant.shipped import robot_parameters
 from laglab.runs.robot_side import link_fates
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario
@@ -59,9 +58,10 @@ class Ends(NamedTuple):
 
 def run_many(scenarios: Sequence[Scenario], told: OnTicks) -> Ends:
     """All of them to the end. There must be no reason to run them one by one (`why_one_by_one`)."""
-    from laglab_fmu import Fleet  # loads FMPy
+    from laglab.runs.plant.fleet import fleet_parameters  # loads FMPy
+    from laglab_fmu import Fleet
 
-    parameters = [robot_parameters(each) for each in scenarios]
+    parameters = [fleet_parameters(each) for each in scenarios]
     with Fleet.open(parameters) as fleet, np.errstate(all="ignore"):  # what diverges overflows
         way = OnTime(scenarios) if is_ideal(scenarios[0]) else Impaired(scenarios)
         return _run(fleet, scenarios[0], way.answer, told)
@@ -76,7 +76,10 @@ def why_one_by_one(scenario: Scenario) -> str | None:
         ),
         f"there is no law {scenario.law.kind} for many robots": scenario.law.kind != "polar",
         f"of {scenario.plant.called} there is one a run, and no fleet (plant)": (
-            not scenario.plant.has_fleet
+            not scenario.plant.ships
+        ),
+        "what is no number is told to one at a time (plant.parameters)": not all(
+            isinstance(value, int | float) for value in scenario.plant.parameters.values()
         ),
         "there are no plans for many robots (plan)": link.plan > 0,
         "there is no play-out for many robots (playout)": bool(
@@ -123,7 +126,8 @@ def _run(
     fleet: Fleet, scenario: Scenario, answer: Callable[[Pose], Answers], told: OnTicks
 ) -> Ends:
     """`answer` is given what is sampled at each tick."""
-    wheels, last, robots = Wheels(scenario), scenario.must_end(), len(fleet.readings)
+    last, robots = scenario.must_end(), len(fleet.readings)
+    inputs = body_speeds if scenario.plant.is_mapped else Wheels(scenario).turning
     page = Page(robots)
     last_tick = np.full(robots, last)
     diverged, unsure = np.zeros(robots, np.bool_), np.zeros(robots, np.bool_)
@@ -137,7 +141,7 @@ def _run(
         if page.is_full or k == last:
             told(page.take())
         if k < last:
-            fleet.step(wheels.turning(answers.applied))
+            fleet.step(inputs(answers.applied))
     return Ends(last_tick, diverged, unsure)
 
 
@@ -241,6 +245,11 @@ def refused(speeds: Speeds, safety: Safety) -> NDArray[np.bool_]:
         np.abs(speeds.omega) <= min(omega_limit, FASTEST)
     )
     return ~allowed
+
+
+def body_speeds(speeds: Speeds) -> Array:
+    """(robots, 2) [m/s, rad/s], column-major as the FMU reads them."""
+    return np.array([speeds.v, speeds.omega]).T
 
 
 class Wheels:

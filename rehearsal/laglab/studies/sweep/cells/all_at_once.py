@@ -5,6 +5,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from laglab.errors import RunError
+from laglab.runs.errors import SIDE_ERRORS
 from laglab.scenario import Scenario
 from laglab.scenario.tables.link import LinkTable
 from laglab.studies.judged import Judge, Judgements, Stretch
@@ -38,11 +40,14 @@ def _in_common(scenario: Scenario) -> tuple[bool, str]:
 
 
 def _together(cells: Sequence[Cell]) -> Iterator[Judgements]:
-    """One batch."""
+    """One batch. Raises RunError, which says where in the grid."""
     runs = [(cell, run) for cell in cells for run in cell.runs()]
     scenario, scenarios = cells[0].scenario, [run for _, run in runs]
     judge = Judge(scenario.target, scenario.link.m, len(scenarios))
-    ends = run_many(scenarios, lambda ticks: judge.add(_recorded(ticks)))
+    try:
+        ends = run_many(scenarios, lambda ticks: judge.add(_recorded(ticks)))
+    except SIDE_ERRORS as error:  # the robots', which have all but their start in common
+        raise RunError(f"{cells[0].place}: {error}") from error
     judged = judge.judgements(np.where(ends.diverged, ends.last_tick, np.nan))
     for robot in np.flatnonzero(ends.unsure):
         alone = judged_alone(*runs[robot])
