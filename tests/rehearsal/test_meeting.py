@@ -172,7 +172,7 @@ def test_a_robot_that_begins_again_is_met_anew(
 def test_a_displaced_station_is_told_and_can_come_back(
     start: Start, listening_port: ListeningPort, tmp_path: Path
 ) -> None:
-    options = ("lab", "--pace", "realtime", "--duration", "60", "--silence", "3")
+    options = ("lab", "--pace", "realtime", "--duration", "60", "--silence", "9")
     watch = ("--watch", "udpin://127.0.0.1:0")
     gateway = start("gateway", *options, *HERE, *watch, "--out", "run")
     link, watched = (there(listening_port(gateway)) for _ in range(2))

@@ -146,7 +146,7 @@ def test_a_controller_that_stops_reading_is_noticed(
 @pytest.mark.slow
 def test_a_station_is_replaced_while_the_line_is_full(start: Start, tmp_path: Path) -> None:
     """Nobody reads for longer than a full queue is waited for; but no longer than is allowed."""
-    options = ("lab", "--duration", "10", "--pace", "realtime")
+    options = ("lab", "--duration", "10", "--pace", "realtime", "--silence", "9")
     gateway = start("gateway", *options, "--endpoint", "pty://robot", "--out", "run")
     wait_until((tmp_path / "robot").exists)
     serial_station = (*options, "--endpoint", f"serial://robot:{BAUD}")
