@@ -1,20 +1,24 @@
 """How far each station can be trusted."""
 
-from types import SimpleNamespace
-
 import numpy as np
+import pyarrow as pa
 import pytest
 
 import laglab
-from laglab.studies.trust import CONDITIONS, Fared, Trial, scores, stations
-from laglab.studies.trust.trials import _late_error
+from laglab.studies.judged import ALARMS, judged_run
+from laglab.studies.sweep.cells.cell import Cell
+from laglab.studies.sweep.cells.compute import computed
+from laglab.studies.sweep.cells.ways import how
+from laglab.studies.trust import CONDITIONS, score, stations, studies
 
 
-def test_the_command_leaves_table_and_picture(tmp_path, ended, monkeypatch):
+def test_the_command_leaves_table_and_picture_and_computes_nothing_twice(
+    tmp_path, ended, monkeypatch
+):
     monkeypatch.chdir(tmp_path)
     options = ("--seeds", "1", "--workers", "1", "--only", "moved by 0.5 m", "--only", "lab")
-    code, page, _ = ended("trust", *options)
-    assert code == 0
+    code, page, said = ended("trust", *options)
+    assert (code, "before" in said) == (0, False)
     assert "of the position [m];" in page
     moved, lab = (
         next(line for line in page.splitlines() if line.startswith(name)).split()
@@ -24,37 +28,74 @@ def test_the_command_leaves_table_and_picture(tmp_path, ended, monkeypatch):
     assert lab[1:4] == ["1", "1", "1"]
     assert (tmp_path / "trust.png").read_bytes().startswith(b"\x89PNG")
 
+    cells = sorted((tmp_path / "studies" / "trust" / "cells").iterdir())
+    times = [each.stat().st_mtime_ns for each in cells]
+    assert len(cells) == 10
+    cells[0].unlink()
+    code, again, said = ended("trust", *options)
+    assert (code, again) == (0, page)
+    assert "9 of 10 runs had been made before, and are in studies/trust/cells" in said
+    assert [each.stat().st_mtime_ns for each in cells][1:] == times[1:]
+    assert cells[0].exists()
+
+
+def only_cell(condition: str, station: str, seeds: int = 1) -> Cell:
+    (study,) = studies([condition], {station: stations("delayed-ekf")[station]}, seeds).values()
+    (cell,) = study.cells()
+    return cell
+
 
 @pytest.mark.parametrize("name", list(CONDITIONS))
 def test_every_condition_can_be_run_with_every_station(name):
-    for station, how in stations("delayed-ekf").items():
-        scenario = Trial(name, station, how, seed=7).scenario
-        assert scenario.seed == 7
+    for station in stations("delayed-ekf"):
+        cell = only_cell(name, station, seeds=7)
+        scenario = cell.scenario
+        assert cell.seeds == tuple(range(1, 8))
         assert scenario.estimator.guard is station.endswith(", guarded")
         p0 = 1e-4 if station.startswith("popf") else 1e-3
         assert scenario.estimator.initial_covariance == p0
 
 
+def test_many_at_once_where_that_can_be():
+    ways = {name: str(how(only_cell(name, "popf"))) for name in CONDITIONS}
+    alone = [name for name, way in ways.items() if way != "in a batch"]
+    assert alone == ["lab-radio", "all of these", "moved by 0.5 m"]
+
+
 def test_the_scores_are_those_of_the_runs():
-    def one(converged, x, alarmed=False, late=None):
-        return Fared("lab", "popf", converged, (x, 0.0, 0.0), 3.0, alarmed, late)
+    runs = {
+        "converged": [True, False, True, False],
+        "rms_x": [0.3, 0.4, 0.0, None],
+        "rms_y": [0.0, 0.0, 0.0, None],
+        "nees": [3.0, 3.0, 6.0, None],
+        "alarm_s": [None, 1.0, 2.0, 3.0],
+        "alarm_error": [None, 0.01, 0.2, None],
+    }
+    of_these = score(pa.table(runs))
+    assert (of_these.runs, of_these.converged, of_these.alarmed) == (4, 2, 3)
+    assert of_these.rms == pytest.approx((0.25 / 3) ** 0.5)
+    assert of_these.nees == 4.0
+    assert of_these.found == 0.5
 
-    runs = [one(True, 0.3), one(False, 0.4, True, 0.01), one(True, 0.0, True, 0.2)]
-    score = scores(runs)["lab", "popf"]
-    assert (score.runs, score.converged, score.alarmed) == (3, 2, 2)
-    assert score.rms == pytest.approx((0.25 / 3) ** 0.5)
-    assert score.found == 0.5
+
+def test_the_error_after_the_first_alarm_is_looked_at_two_seconds_later():
+    run = laglab.run("lab-real", {"duration": 4.0})
+    first = run.alarms[0]
+    off = [run.trace[f"{axis}_est"][first + 200] - run.trace[axis][first + 200] for axis in "xy"]
+    judged = judged_run(run)
+    assert judged.alarm_s == pytest.approx([first * 0.01])
+    assert judged.alarm_error == pytest.approx([np.hypot(*off)])
+    short = judged_run(laglab.run("lab-real", {"duration": first * 0.01 + 1.9}))
+    assert short.alarm_s == judged.alarm_s
+    assert np.isnan(short.alarm_error).all()
 
 
-def test_the_error_after_an_alarm_is_looked_at_two_seconds_later():
-    run = laglab.run("lab", {"duration": 4.0})
-    off = [run.trace[f"{axis}_est"][300] - run.trace[axis][300] for axis in ("x", "y")]
-
-    def late_error(*alarms):
-        return _late_error(SimpleNamespace(alarms=alarms, trace=run.trace, scenario=run.scenario))
-
-    assert late_error(100, 350) == pytest.approx(np.hypot(*off))
-    assert late_error(201) is late_error() is None
+def test_an_alarm_is_told_where_it_is_asked_for():
+    cell = only_cell("lab-real", "popf, guarded")
+    (told,) = computed([cell])
+    (quiet,) = computed([Cell(cell.base, cell.grid, cell.seeds, cell.radius, cell.origin)])
+    assert [name for name in told.column_names if name not in quiet.column_names] == list(ALARMS)
+    assert told["alarm_s"].null_count == 0
 
 
 @pytest.mark.parametrize("options", [("--only", "nonsense"), ("--estimator", "nonsense")])

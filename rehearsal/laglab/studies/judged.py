@@ -57,6 +57,16 @@ class Judgements(NamedTuple):
     max_omega: Array
     """The largest applied, absolute."""
     diverged_tick: Array
+    alarm_s: Array
+    """[s] When the guard raised its first alarm."""
+    alarm_error: Array
+    """[m] Of the estimated position, LOOKED_AT_AFTER later, if the run goes on until then."""
+
+
+ALARMS = ("alarm_s", "alarm_error")
+"""What a study's rows have only where it is asked for."""
+LOOKED_AT_AFTER = 2.0
+"""[s] How long after the first alarm the error is looked at."""
 
 
 class Judge:
@@ -103,7 +113,7 @@ class Judge:
 
     def judgements(self, diverged: Array) -> Judgements:
         """Of every robot. `diverged` (robots,): the tick at which its run ended because the
-        estimate had diverged; NaN: it went on to its last tick."""
+        estimate had diverged; NaN: it went on to its last tick. There was no alarm."""
         last, sample_time = self._ticks - 1, self._of.sample_time
         completed = np.isnan(diverged)
         time: Array = np.arange(self._ticks) * np.float64(sample_time)
@@ -125,6 +135,8 @@ class Judge:
             max_v=self._largest[:, 0],
             max_omega=self._largest[:, 1],
             diverged_tick=diverged,
+            alarm_s=np.full(len(diverged), np.nan),
+            alarm_error=np.full(len(diverged), np.nan),
         )
 
 
@@ -146,7 +158,14 @@ def judged_run(done: Run) -> Judgements:
         np.stack([trace["v"], trace["omega"]], axis=1)[np.newaxis],
     )
     last = np.array([trace["tick"][-1] if diverged else np.nan])
-    return judgements(record, last, done.scenario.target, done.scenario.link.m)
+    judged = judgements(record, last, done.scenario.target, done.scenario.link.m)
+    if not done.alarms:
+        return judged
+    Ts = done.scenario.sample_time
+    later = done.alarms[0] + round(LOOKED_AT_AFTER / Ts)
+    off = pose_difference(loop_estimates(trace), robot_pose(trace))[later : later + 1, :2]
+    error = np.hypot(*off.T) if len(off) else np.array([np.nan])
+    return judged._replace(alarm_s=np.array([done.alarms[0] * Ts]), alarm_error=error)
 
 
 def joined(parts: list[Judgements]) -> Judgements:

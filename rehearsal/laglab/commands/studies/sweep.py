@@ -1,19 +1,16 @@
 """``laglab sweep``."""
 
-from contextlib import AbstractContextManager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from laglab.commands.options import WorkersOption
+from laglab.commands.studies.working import SchedulerOption, executor_of, kept_when_interrupted
 from laglab.extras import SEEING, STUDYING, require
 from laglab.results.place import REPORT_FILE
 from laglab.scenario import assignment
 from laglab.tables import plain_table, say, terminal
-
-if TYPE_CHECKING:
-    from laglab.studies.workers import Executor
 
 
 def sweep(
@@ -33,10 +30,7 @@ def sweep(
         typer.Option("--set", metavar="KEY=VALUE", help="A key of its scenario; may be repeated."),
     ] = None,
     workers: WorkersOption = 0,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(metavar="URL", help="A dask scheduler, tcp://HOST:PORT; local: one of ours."),
-    ] = None,
+    scheduler: SchedulerOption = None,
     force: Annotated[bool, typer.Option("--force", help="Compute again what is there.")] = False,
     limit: Annotated[int, typer.Option(min=1, help="The most runs that are meant.")] = 1_000_000,
     report: Annotated[
@@ -60,19 +54,15 @@ def sweep(
     from laglab.studies.sweep.sweeping import work_off
     from laglab.studies.sweep.work import checked_work
 
-    executor = _workers(scheduler, workers)
+    executor = executor_of(scheduler, workers)
     chosen = load_study(study, dict(map(assignment, told or [])), seeds)
     place = out or Path("studies") / chosen.name
     work = checked_work(chosen, None if force else Folder(place), limit)
     folder = Folder.made(place, chosen)
     for line in strangers_told(chosen, folder):
         say(line)
-    try:
-        work_off(chosen, folder, executor, work, again=force)
-    except KeyboardInterrupt:
-        kept = sum(len(cell.seeds) for cell in chosen.cells() if folder.has(cell))
-        say(f"{kept} of {chosen.runs} runs are kept: the same command goes on from there")
-        raise
+    with kept_when_interrupted(chosen.runs, lambda: folder.runs(chosen.cells())):
+        work_off(chosen.name, chosen.cells(), folder, executor, work, again=force)
     said = summary(chosen, folder, work)
     terminal().print(said, highlight=False)
     if report:
@@ -80,15 +70,6 @@ def sweep(
 
         save_study_page(chosen, folder.path, said.splitlines(), folder.path / REPORT_FILE)
         print(f"report in {folder.path / REPORT_FILE}")
-
-
-def _workers(scheduler: str | None, workers: int) -> "AbstractContextManager[Executor]":
-    from laglab.studies.sweep.cluster import OURS, cluster
-    from laglab.studies.workers import Processes
-
-    if workers and scheduler not in (None, OURS):
-        raise typer.BadParameter("--workers: whoever runs the scheduler says how many it has")
-    return Processes(workers) if scheduler is None else cluster(scheduler, workers)
 
 
 def _list() -> None:

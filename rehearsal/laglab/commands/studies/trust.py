@@ -1,5 +1,6 @@
 """``laglab trust``."""
 
+from itertools import chain
 from pathlib import Path
 from typing import Annotated
 
@@ -13,20 +14,20 @@ from laglab.commands.options import (
     chosen,
     some_of,
 )
-from laglab.extras import REHEARSING, require
-from laglab.progress import tracked
+from laglab.commands.studies.working import SchedulerOption, executor_of, kept_when_interrupted
+from laglab.extras import REHEARSING, STUDYING, require
 from laglab.results.figures import picture_place, save
 from laglab.scenario.tables.names import known_estimator
 from laglab.studies.trust import (
     CONDITIONS,
     DEFAULT,
     draw_trust,
-    fared,
-    scores,
+    score,
     stations,
+    studies,
     trust_table,
 )
-from laglab.tables import terminal
+from laglab.tables import say, terminal
 from laglab_control import ESTIMATORS
 
 
@@ -44,20 +45,38 @@ def trust(
         ),
     ] = DEFAULT,
     workers: WorkersOption = 0,
+    scheduler: SchedulerOption = None,
+    keep: Annotated[
+        Path, typer.Option(metavar="DIR", help="Where the runs' tables are kept.")
+    ] = Path("studies/trust"),
     out: PictureOption = Path("trust.png"),
 ) -> None:
     """Try how far each station can be trusted.
 
     On bad links, with a worn robot, when it is moved: the guarded default station beside popf with
-    a guard and the filters without one.
+    a guard and the filters without one. What has been computed is kept: the same command goes on
+    where the last one ended.
     """
     require(REHEARSING)
+    require(STUDYING)
+    from laglab.studies.sweep.folder import Folder
+    from laglab.studies.sweep.sweeping import work_off
+    from laglab.studies.sweep.work import work_left
+
     picture_place(out)
     conditions = chosen("--only", only, CONDITIONS)
     compared = stations(checked("--estimator", known_estimator, estimator))
-    total = len(conditions) * len(compared) * seeds
-    runs = fared(conditions, compared, seeds, workers)
-    got = scores(list(tracked(runs, total, "trust", "run")))
+    executor = executor_of(scheduler, workers)
+    tried = studies(conditions, compared, seeds)
+    folder = Folder.of_cells(keep, "--keep")
+    work = work_left(*tried.values(), folder=folder)
+    cells = list(chain.from_iterable(study.cells() for study in tried.values()))
+    runs = sum(study.runs for study in tried.values())
+    with kept_when_interrupted(runs, lambda: folder.runs(cells)):
+        work_off("trust", cells, folder, executor, work)
+    if made := runs - work.runs:
+        say(f"{made} of {runs} runs had been made before, and are in {folder.cells}")
+    got = {pair: score(folder.table_of(study.cells())) for pair, study in tried.items()}
     terminal().print(trust_table(got, list(compared), seeds))
     save(draw_trust(got, list(compared)), out)
     print(f"picture in {out}")

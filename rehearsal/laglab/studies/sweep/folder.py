@@ -35,16 +35,22 @@ class Folder:
     path: Path
 
     @classmethod
-    def made(cls, path: Path, study: Study) -> "Folder":
-        """For the study, from now on; what is there stays. Raises: PlaceError, ResultsError."""
-        folder_place("--out", path)
+    def of_cells(cls, path: Path, option: str = "--out") -> "Folder":
+        """For cells, whatever they are of; what is there stays. Raises PlaceError."""
+        folder_place(option, path)
         if (path / SUMMARY_FILE).exists():
-            raise PlaceError(f"--out {path}: a run's results are there: take another folder")
+            raise PlaceError(f"{option} {path}: a run's results are there: take another folder")
         folder = cls(path)
-        for half in folder_place("--out", folder.cells).glob(BESIDE):
+        for half in folder_place(option, folder.cells).glob(BESIDE):
             with suppress(OSError):
                 if time.time() - half.stat().st_mtime > ABANDONED:
                     half.unlink()
+        return folder
+
+    @classmethod
+    def made(cls, path: Path, study: Study) -> "Folder":
+        """For the study, from now on; what is there stays. Raises: PlaceError, ResultsError."""
+        folder = cls.of_cells(path)
         text = to_toml(study, study.origin)
         if not (folder._study.is_file() and folder._study.read_bytes() == text.encode()):
             write_whole(folder._study, text, lasting=True)
@@ -75,6 +81,10 @@ class Folder:
     def has(self, cell: Cell) -> bool:
         """Whether it has been computed; not where nobody may look."""
         return os.path.isfile(self.file(cell))  # noqa: PTH113 Path.is_file raises there
+
+    def runs(self, cells: Iterable[Cell]) -> int:
+        """How many of theirs have been made."""
+        return sum(len(cell.seeds) for cell in cells if self.has(cell))
 
     def keep(self, cell: Cell, content: bytes) -> None:
         """For good. Raises ResultsError."""
@@ -109,3 +119,10 @@ class Folder:
     def tables(self, cells: Iterable[Cell], columns: list[str] | None = None) -> Iterator[pa.Table]:
         """Of those that are there, one after the other. Raises NoRunError."""
         return (self.table(cell, columns) for cell in cells if self.has(cell))
+
+    def table_of(self, cells: Iterable[Cell], columns: list[str] | None = None) -> pa.Table:
+        """All their rows. Raises NoRunError, also when there is none."""
+        tables = list(self.tables(cells, columns))
+        if not tables:
+            raise NoRunError(f"{self.path}: no cell of this study has been computed")
+        return pa.concat_tables(tables)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from laglab.errors import NoRunError, StudyError
+from laglab.errors import StudyError
 from laglab.studies.sweep.folder import Folder
 from laglab.studies.sweep.study import Study
 
@@ -51,7 +51,7 @@ class StudyResult:
     @property
     def table(self) -> pa.Table:
         """All rows, as one pyarrow.Table. Raises NoRunError."""
-        return self._table()
+        return self.folder.table_of(self.study.cells(self.origin))
 
     def to_pandas(self) -> pandas.DataFrame:
         """All rows. Needs pandas. Raises NoRunError."""
@@ -65,15 +65,10 @@ class StudyResult:
         """
         columns = [x, y, value]
         self._check(columns)
-        frame = self._table(sorted(set(columns))).to_pandas()
+        cells = self.study.cells(self.origin)
+        frame = self.folder.table_of(cells, sorted(set(columns))).to_pandas()
         frame[value] = frame[value].astype(float)
         return frame.pivot_table(index=y, columns=x, values=value, aggfunc="mean", dropna=False)
-
-    def _table(self, columns: list[str] | None = None) -> pa.Table:
-        tables = list(self.tables(columns))
-        if not tables:
-            raise NoRunError(f"{self.directory}: no cell of this study has been computed")
-        return pa.concat_tables(tables)
 
     def _check(self, columns: list[str]) -> None:
         """Raises StudyError: there is no such column in the first table, which is like all."""

@@ -41,6 +41,8 @@ class Study:
     """[m] Every seed starts within it, about the goal; None: where the scenario says."""
     name: str = "study"
     description: str = ""
+    also: tuple[str, ...] = ()
+    """Columns that other studies' rows do not have: some of `laglab.studies.judged.ALARMS`."""
 
     def __post_init__(self) -> None:
         if not isinstance(self.scenario, Scenario):
@@ -77,7 +79,7 @@ class Study:
             grid = dict(zip(self.grid, values, strict=True))
             seeds = iter(self.seeds)
             while some := tuple(islice(seeds, MOST_SEEDS)):
-                yield Cell(base, grid, some, self.radius, origin)
+                yield Cell(base, grid, some, self.radius, origin, self.also)
 
     @cached_property
     def origin(self) -> str:

@@ -1,6 +1,6 @@
 """A study, computed: every cell that is not there yet, by whoever does jobs."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable
 from concurrent.futures import CancelledError
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
@@ -40,52 +40,50 @@ def swept(
         folder = Folder.made(Path(out), chosen)
         result = StudyResult(chosen, folder, chosen.origin)
     workers = Processes(0) if executor is None else nullcontext(executor)
-    work_off(chosen, folder, workers, work, progress)
+    work_off(chosen.name, chosen.cells(), folder, workers, work, progress)
     return result
 
 
 def work_off(
-    study: Study,
+    name: str,
+    cells: Iterable[Cell],
     folder: Folder,
     workers: AbstractContextManager[Executor],
     work: Work,
     progress: bool = True,
     again: bool = False,
 ) -> None:
-    """Do the work that is left, or all of it `again`. Raises as `compute`."""
+    """Do the work that is left of the cells, or all of it `again`. Raises as `compute`."""
     with (
-        progress_of_study(study.name, work.runs, work.seconds, progress) as told,
+        progress_of_study(name, work.runs, work.seconds, progress) as told,
         workers as executor,
     ):
-        compute(study, folder, executor, told, again)
+        # Looked for when it is its turn: somebody else may have computed it meanwhile.
+        wanted = (cell for cell in cells if again or not folder.has(cell))
+        compute(name, wanted, folder, executor, told)
 
 
 def compute(
-    study: Study,
+    name: str,
+    cells: Iterable[Cell],
     folder: Folder,
     executor: Executor,
     told: Callable[[int, float], None],
-    again: bool = False,
 ) -> None:
-    """The cells that are not there, or all of them `again`; `told` of each, its runs and cost.
+    """The cells, into the folder; `told` of each, its runs and cost.
 
     A run that fails is no reason to leave out the others: what failed is said at the end.
     Raises: RunError, ResultsError. What had been done until then stays.
     """
-
-    def wanted() -> Iterator[Cell]:
-        """Looked for when it is its turn: somebody else may have computed it meanwhile."""
-        return (cell for cell in study.cells() if again or not folder.has(cell))
-
     failed: list[str] = []
-    for task, future in as_done(executor, done, grouped(wanted()), AHEAD):
+    for task, future in as_done(executor, done, grouped(cells), AHEAD):
         try:
             contents = future.result()
         except LaglabError:
             raise
         except (Exception, CancelledError) as error:  # whatever an executor may say
             raise RunError(
-                f"{study.name}: whoever was to do the rest failed or is gone ({error!r}): what is "
+                f"{name}: whoever was to do the rest failed or is gone ({error!r}): what is "
                 "done is kept, and the same command goes on from there"
             ) from error
         for cell, content in zip(task.cells, contents, strict=True):
@@ -97,6 +95,6 @@ def compute(
     if failed:
         others = f" (and {len(failed) - 1} more such)" if failed[1:] else ""
         raise RunError(
-            f"{study.name}: {failed[0]}{others}: all else that is done is kept, and the same "
+            f"{name}: {failed[0]}{others}: all else that is done is kept, and the same "
             "command goes on from there"
         )

@@ -1,6 +1,8 @@
 """What a study asks for: known, and checked, before anything runs."""
 
 from collections import Counter
+from collections.abc import Iterator
+from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
 from pydantic import ValidationError
@@ -35,13 +37,13 @@ class Work(NamedTuple):
         return self.ways.total()
 
 
-def work_left(study: Study, folder: "Folder | None" = None) -> Work:
-    """The study's cells that are not in the folder, summed up. Raises StudyError: a cell, in the
+def work_left(*studies: Study, folder: "Folder | None" = None) -> Work:
+    """The studies' cells that are not in the folder, summed up. Raises StudyError: a cell, in the
     folder or not, cannot be run."""
     ways: Counter[How] = Counter()
     cost = 0.0
     tried = set[tuple[PlantTable, float]]()
-    for cell in study.cells():
+    for study, cell in chain.from_iterable(map(_named, studies)):
         check(study, cell)
         robot = cell.scenario.plant, cell.scenario.sample_time
         if robot not in tried:
@@ -51,6 +53,10 @@ def work_left(study: Study, folder: "Folder | None" = None) -> Work:
             ways[how(cell)] += len(cell.seeds)
             cost += seconds(cell)
     return Work(ways, cost)
+
+
+def _named(study: Study) -> Iterator[tuple[Study, Cell]]:
+    return ((study, cell) for cell in study.cells())
 
 
 def _check_robot(study: Study, cell: Cell) -> None:
@@ -69,7 +75,7 @@ def checked_work(study: Study, folder: "Folder | None", limit: int = MOST_RUNS) 
             f"{len(study.seeds)} seeds), more than the limit of {limit}: take fewer values, or say "
             f"--limit {study.runs}"
         )
-    return work_left(study, folder)
+    return work_left(study, folder=folder)
 
 
 def check(study: Study, cell: Cell) -> None:

@@ -1,16 +1,14 @@
 """How far each station can be trusted."""
 
-from laglab.studies.trust.report import draw_trust, scores, trust_table
-from laglab.studies.trust.trials import CONDITIONS, DEFAULT, Fared, Trial, fared, stations
+from laglab.studies.trust.report import draw_trust, score, trust_table
+from laglab.studies.trust.trials import CONDITIONS, DEFAULT, stations, studies
 
 __all__ = [
     "CONDITIONS",
     "DEFAULT",
-    "Fared",
-    "Trial",
     "draw_trust",
-    "fared",
-    "scores",
+    "score",
     "stations",
+    "studies",
     "trust_table",
 ]

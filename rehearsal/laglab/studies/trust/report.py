@@ -7,13 +7,16 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.table import Table
 
-from laglab.studies.shares import by_pair, draw_shares
-from laglab.studies.trust.trials import LOOKED_AT_AFTER, Fared
+from laglab.studies.judged import LOOKED_AT_AFTER
+from laglab.studies.shares import draw_shares
+from laglab.studies.trust.trials import Pair
 from laglab.tables import plain_table
 
 if TYPE_CHECKING:
+    import pyarrow as pa
     from matplotlib.figure import Figure
 
 FOUND = 0.05
@@ -35,28 +38,25 @@ class Score(NamedTuple):
     """The share of them in which the estimate was within FOUND when it was looked at."""
 
 
-Scores = Mapping[tuple[str, str], Score]
-"""By condition and station."""
+Scores = Mapping[Pair, Score]
 
 
-def scores(fared: Sequence[Fared]) -> Scores:
-    """In the order in which they come."""
-    pairs = by_pair(fared, lambda one: (one.condition, one.station))
-    return {pair: _score(ones) for pair, ones in pairs.items()}
-
-
-def _score(ones: Sequence[Fared]) -> Score:
-    squares = [one.rms[0] ** 2 + one.rms[1] ** 2 for one in ones if one.rms]
-    nees = [one.nees for one in ones if one.nees is not None]
-    late = [one.late_error for one in ones if one.late_error is not None]
+def score(runs: pa.Table) -> Score:
+    """Of rows of a study, with those of ALARMS."""
+    squares = _known(runs, "rms_x") ** 2 + _known(runs, "rms_y") ** 2
+    nees, late = _known(runs, "nees"), _known(runs, "alarm_error")
     return Score(
-        len(ones),
-        sum(one.converged for one in ones),
-        float(np.sqrt(np.mean(squares))) if squares else np.nan,
-        float(np.mean(nees)) if nees else np.nan,
-        sum(one.alarmed for one in ones),
-        float(np.mean(np.array(late) < FOUND)) if late else np.nan,
+        runs.num_rows,
+        int(np.sum(runs["converged"].to_numpy())),
+        float(np.sqrt(np.mean(squares))) if len(squares) else np.nan,
+        float(np.mean(nees)) if len(nees) else np.nan,
+        len(_known(runs, "alarm_s")),
+        float(np.mean(late < FOUND)) if len(late) else np.nan,
     )
+
+
+def _known(runs: pa.Table, column: str) -> NDArray[np.float64]:
+    return np.asarray(runs[column].drop_null().to_numpy(), np.float64)
 
 
 def trust_table(of: Scores, stations: Sequence[str], seeds: int) -> Table:

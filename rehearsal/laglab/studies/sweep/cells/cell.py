@@ -32,11 +32,13 @@ class Cell(Struct, frozen=True, dict=True):
     origin: str
     """Of what else the runs depend on: a hash of the base, of the files that the study names, and
     of the code."""
+    also: tuple[str, ...] = ()
+    """Columns that other studies' rows do not have: some of ALARMS."""
 
     @cached_property
     def key(self) -> str:
         """Names the cell's file: another description, or other code, another key."""
-        told = [self.origin, sorted(self.grid.items()), self.seeds, self.radius]
+        told = [self.origin, sorted(self.grid.items()), self.seeds, self.radius, self.also]
         return hashlib.sha256(json.dumps(told).encode()).hexdigest()[:32]
 
     @cached_property

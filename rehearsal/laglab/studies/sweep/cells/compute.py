@@ -8,7 +8,7 @@ import pyarrow as pa
 from numpy.typing import NDArray
 
 from laglab.scenario.explain import spelled
-from laglab.studies.judged import Judgements
+from laglab.studies.judged import ALARMS, Judgements
 from laglab.studies.sweep.cells.cell import Cell
 from laglab.studies.sweep.cells.ways import judged
 
@@ -25,13 +25,18 @@ def table(cell: Cell, became: Judgements) -> pa.Table:
     """The grid's values, the seeds and their starts, and what became of them; null for nothing."""
     rows = len(cell.seeds)
     x, y, theta = cell.starts().T
+    left_out = set(ALARMS) - set(cell.also)
     columns: Mapping[str, pa.Array] = {
         **{key: pa.array([column_value(value)] * rows) for key, value in cell.grid.items()},
         "seed": pa.array(cell.seeds, pa.int64()),
         "start_x": pa.array(x),
         "start_y": pa.array(y),
         "start_theta": pa.array(theta),
-        **{name: _column(name, values) for name, values in became._asdict().items()},
+        **{
+            name: _column(name, values)
+            for name, values in became._asdict().items()
+            if name not in left_out
+        },
     }
     told = {"grid": cell.grid, "radius": cell.radius, "origin": cell.origin}
     return pa.table(columns).replace_schema_metadata({DESCRIPTION: msgspec.json.encode(told)})
