@@ -5,12 +5,14 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
+from msgspec import Struct
 from msgspec.structs import astuple
 from rich.table import Table
 
 from laglab.interface import run
 from laglab.results.summary import Errors
 from laglab.scenario import Scenario, changed
+from laglab.studies.workers import shared_out
 from laglab.tables import plain_table
 from laglab_control import Erratum, PrintedController
 
@@ -47,10 +49,27 @@ class Cost(NamedTuple):
     seeds: int
 
 
-def costs(scenario: Scenario, seeds: int) -> Iterator[Cost]:
-    """Every variant in the loop of the scenario, one after the other."""
-    for variant in VARIANTS:
-        yield cost(scenario, variant, seeds)
+class Job(Struct, frozen=True):
+    """A variant to be tried."""
+
+    scenario: str
+    """As TOML."""
+    variant: int
+    """Its place among VARIANTS."""
+    seeds: int
+
+
+def costs(scenario: Scenario, seeds: int, workers: int) -> Iterator[tuple[Variant, Cost]]:
+    """Every variant in the loop of the scenario, as they are done. Raises RunError."""
+    jobs = [Job(scenario.to_toml(), number, seeds) for number in range(len(VARIANTS))]
+    for number, of_it in shared_out(tried, jobs, workers):
+        yield VARIANTS[number], of_it
+
+
+def tried(job: Job) -> tuple[int, Cost]:
+    """In a worker: one variant, by its place."""
+    scenario = Scenario.from_toml(job.scenario)
+    return job.variant, cost(scenario, VARIANTS[job.variant], job.seeds)
 
 
 def cost(scenario: Scenario, variant: Variant, seeds: int) -> Cost:

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from laglab.commands.on_scenario import on_scenario
+from laglab.commands.options import WorkersOption
 from laglab.extras import STEPPING, require
 from laglab.progress import tracked
 from laglab.scenario import Scenario
@@ -17,6 +18,7 @@ from laglab.tables import terminal
 def errata(
     scenario: Scenario,
     seeds: Annotated[int, typer.Option(min=1, help="Runs with noise, for each version.")] = 5,
+    workers: WorkersOption = 0,
 ) -> None:
     """Run the paper's filter as printed beside it as corrected.
 
@@ -24,5 +26,5 @@ def errata(
     """
     require(STEPPING)
     scenario.must_end()
-    rows = list(tracked(costs(scenario, seeds), len(VARIANTS), "errata", "version"))
-    terminal().print(costs_table(scenario, rows))
+    got = dict(tracked(costs(scenario, seeds, workers), len(VARIANTS), "errata", "version"))
+    terminal().print(costs_table(scenario, [got[variant] for variant in VARIANTS]))
