@@ -14,12 +14,11 @@ from laglab.progress import tracked
 from laglab.results.figures import picture_place, save
 from laglab.scenario import Scenario
 from laglab.scenario.tables.estimator import COMPARABLE, comparable
-from laglab.studies.consistency import consistency_table, draw_consistency, nth, samples, verdict
+from laglab.studies.consistency import consistency_table, draw_consistency, nth, samples, verdicts
 from laglab.tables import terminal
 
 JUDGED = ("ekf", "popf", "popf-exact", "delayed-ekf")
 MOST_SEEDS = 10_000
-"""Each seed's samples are kept in memory: half a megabyte and more."""
 
 
 @partial(on_scenario, by_default="lab")
@@ -45,11 +44,10 @@ def consistency(
     names = [checked("--judge", comparable, name) for name in dict.fromkeys(judged or JUDGED)]
     _check(scenario, seeds)
     runs = samples(scenario, names, seeds, workers)
-    got = list(tracked(runs, seeds, "consistency", "seed"))
-    m = scenario.link.m
-    verdicts = [verdict(name, [sample[name] for sample in got], m) for name in names]
-    terminal().print(consistency_table(scenario, verdicts, seeds))
-    save(draw_consistency(scenario, verdicts, width), out)
+    shown = tracked(runs, seeds, "consistency", "seed")
+    got = verdicts(names, shown, scenario.must_end(), scenario.link.m)
+    terminal().print(consistency_table(scenario, got, seeds))
+    save(draw_consistency(scenario, got, width), out)
     print(f"picture in {out}")
 
 

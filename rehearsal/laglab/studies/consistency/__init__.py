@@ -1,20 +1,13 @@
 """Whether the covariance that a filter claims is the one its error has, over many seeds."""
 
-from laglab.studies.consistency.judging import (
-    Job,
-    Sample,
-    chi_square_bounds,
-    judge,
-    judged,
-    nth,
-    samples,
-    verdict,
-)
+from laglab.studies.consistency.judging import Job, Sample, judge, judged, nth, samples
 from laglab.studies.consistency.report import consistency_table, draw_consistency
+from laglab.studies.consistency.tally import Tally, chi_square_bounds, verdicts
 
 __all__ = [
     "Job",
     "Sample",
+    "Tally",
     "chi_square_bounds",
     "consistency_table",
     "draw_consistency",
@@ -22,5 +15,5 @@ __all__ = [
     "judged",
     "nth",
     "samples",
-    "verdict",
+    "verdicts",
 ]

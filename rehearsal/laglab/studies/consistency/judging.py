@@ -11,7 +11,7 @@ section 5.4.
 """
 
 from collections.abc import Iterator, Sequence
-from functools import cache, partial
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -20,19 +20,13 @@ from numpy.typing import NDArray
 
 from laglab.interface import run
 from laglab.results.nees import nees
-from laglab.results.numbers import mean_of_known, pose_difference, robot_pose
+from laglab.results.numbers import pose_difference, robot_pose
 from laglab.scenario import Scenario, changed
 from laglab.studies.overhearing import Known, Overhearing
 from laglab.studies.workers import shared_out
-from laglab_control import chi_square_bound
 from laglab_gateway import Trace
 
 Array = NDArray[np.float64]
-DEGREES = 3
-CONFIDENCE = 0.95
-INSIDE = 0.9
-"""The share of ticks that must be within the bounds. 0.95 is expected, but successive averages of
-NEES hang together, so that the share itself scatters."""
 
 
 class Sample(NamedTuple):
@@ -48,71 +42,6 @@ class Sample(NamedTuple):
     """(N+1,); NaN where nothing was measured."""
     nees_ahead: Array
     """(N+1,): of x̂_{k+n}, by which the command was made, when the robot was there."""
-
-
-class Average(NamedTuple):
-    """Of NEES or NIS over the seeds, at the ticks from m on."""
-
-    values: Array
-    """NaN where no seed has a value."""
-    seeds: Array
-    """How many have one."""
-
-    @property
-    def mean(self) -> float:
-        """Over all ticks."""
-        return float(mean_of_known(self.values))
-
-    @property
-    def inside(self) -> float:
-        """The share of the ticks at which the average is within the bounds for its seeds."""
-        low, high = np.array([chi_square_bounds(int(n)) for n in self.seeds]).T
-        within = (low <= self.values) & (self.values <= high)
-        return float(mean_of_known(np.where(self.seeds == 0, np.nan, within)))
-
-
-class Verdict(NamedTuple):
-    """One filter over all seeds, ticks >= m."""
-
-    estimator: str
-    nees: Average
-    nis: Average
-    nees_ahead: Average
-    """Of the prediction x̂_{k+n}."""
-    of_runs: Array
-    """(seeds,): each run's own NEES, averaged over its ticks."""
-    claimed: Array
-    """(N+1-m, 3), the standard deviations that P claims, root mean square over the seeds."""
-    true: Array
-    """(N+1-m, 3), those that the errors have."""
-    indefinite: float
-    """The share of ticks at which P is not positive definite."""
-    diverged: int
-    """Seeds."""
-    bounds: tuple[float, float]
-    """Of the average of all seeds at one tick, at 95 %."""
-
-    @property
-    def consistent(self) -> bool:
-        """The averages of NEES and NIS lie within the bounds, over all and at nearly every tick;
-        P was always a covariance, and no seed diverged."""
-        low, high = self.bounds
-        within = all(
-            low <= average.mean <= high and average.inside >= INSIDE
-            for average in (self.nees, self.nis)
-        )
-        return within and not (self.indefinite or self.diverged)
-
-
-@cache
-def chi_square_bounds(seeds: int) -> tuple[float, float]:
-    """Between which an average of NEES or NIS over `seeds` lies at 95 %; NaN without seeds."""
-    if seeds == 0:
-        return np.nan, np.nan
-    degrees = DEGREES * seeds
-    tail = (1 - CONFIDENCE) / 2
-    low, high = (chi_square_bound(above, degrees) / seeds for above in (1 - tail, tail))
-    return low, high
 
 
 def nth(scenario: Scenario, number: int) -> Scenario:
@@ -159,34 +88,3 @@ def judged(said: Sequence[Known], trace: Trace) -> Sample:
     variances = np.diagonal(P, axis1=1, axis2=2)
     ahead_error = pose_difference(ahead, there)
     return Sample(error, variances, nees(error, P), nis, nees(ahead_error, P_ahead))
-
-
-def verdict(name: str, of_seeds: Sequence[Sample], measurement_delay: int) -> Verdict:
-    """All seeds of one filter together; a seed counts up to where it diverged."""
-    length = max(len(one.nees) for one in of_seeds)
-    error, variances, nees, nis, nees_ahead = (
-        np.stack([_padded(values, length)[measurement_delay:] for values in column])
-        for column in zip(*of_seeds, strict=True)
-    )
-    alive = ~np.isnan(error[:, :, 0])
-    return Verdict(
-        name,
-        nees=_average(nees),
-        nis=_average(nis),
-        nees_ahead=_average(nees_ahead),
-        of_runs=mean_of_known(nees.T),
-        claimed=np.sqrt(np.maximum(mean_of_known(variances), 0)),
-        true=np.sqrt(mean_of_known(error**2)),
-        indefinite=float(mean_of_known(np.isnan(nees)[alive].astype(np.float64))),
-        diverged=int(np.sum(~alive[:, -1])),
-        bounds=chi_square_bounds(len(of_seeds)),
-    )
-
-
-def _average(values: Array) -> Average:
-    return Average(mean_of_known(values), np.sum(~np.isnan(values), axis=0))
-
-
-def _padded(values: Array, length: int) -> Array:
-    missing = np.full((length - len(values), *values.shape[1:]), np.nan)
-    return np.concatenate((values, missing))

@@ -14,7 +14,7 @@ from laglab.results.figures.panels import marked
 from laglab.results.figures.style import BLUE, GREY, PALE, short
 from laglab.results.numbers import mean_of_known
 from laglab.scenario import Scenario
-from laglab.studies.consistency.judging import CONFIDENCE, DEGREES, Average, Verdict
+from laglab.studies.consistency.tally import CONFIDENCE, DEGREES, Average, Verdict
 from laglab.tables import plain_table
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ import numpy as np
 from laglab.interface import run
 from laglab.results.numbers import loop_estimates, measurements, shadow_estimates
 from laglab.scenario import load
-from laglab.studies.consistency import Job, chi_square_bounds, judge, nth, verdict
+from laglab.studies.consistency import Job, chi_square_bounds, judge, nth, verdicts
 from laglab.studies.errata import VARIANTS, Variant, cost
 from laglab.studies.reproduce.claim import Claim, Evidence, Verdict, never
 from laglab_control import Erratum, Popf, RobotModel, constant_delay, replay
@@ -65,9 +65,8 @@ def claimed_covariance() -> Evidence:
     scenario = load("lab", {"estimator.initial_covariance": P_0, "estimator.kind": "delayed-ekf"})
     names = ("popf", "popf-exact")
     jobs = [Job(nth(scenario, number).to_toml(), names) for number in range(SEEDS)]
-    told = [judge(job) for job in jobs]
     m = scenario.link.measurement_delay
-    popf, exact = (verdict(name, [each[name] for each in told], m) for name in names)
+    popf, exact = verdicts(names, map(judge, jobs), scenario.must_end(), m)
     high = chi_square_bounds(SEEDS)[1]
     return Evidence(
         {
