@@ -11,7 +11,7 @@ from matplotlib import colormaps
 from laglab.command import main
 from laglab.errors import StudyError
 from laglab.scenario import load
-from laglab.studies.maps import draw_study, runs_of
+from laglab.studies.maps import draw_study, read_runs, runs_of
 from laglab.studies.maps.drawing import margins
 from laglab.studies.maps.grid import fields, sorted_into
 from laglab.studies.maps.margin import excess
@@ -112,6 +112,32 @@ def test_the_longest_numeric_keys_span_the_map():
 def test_a_key_without_a_scale_makes_panels_before_a_longer_one():
     grid = {KIND: ["raw", "popf"], "law.h": [1.0, 2.0, 3.0], N: [0, 1, 2], M: [0, 1, 2]}
     assert layout(study(grid), x="law.h", y=N) == Layout("law.h", N, KIND, (M,))
+    assert layout(study(grid), panels=N) == Layout("law.h", M, N, (KIND,))
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ({"x": N, "panels": N}, "--x and --panels are both 'link.command_delay': take two keys"),
+        ({"panels": "law.h"}, "--panels: 'law.h' is not a key of this study's grid: "),
+        ({"panels": M}, "--panels: link.measurement_delay has 7 values, and 6 panels have room"),
+    ],
+)
+def test_panels_that_cannot_be_are_told(asked: dict[str, str], said: str):
+    with pytest.raises(StudyError, match=said):
+        draw_study(study({N: [0, 1], M: list(range(7)), KIND: ["raw", "popf"]}), **asked)
+
+
+def test_panels_are_those_that_are_asked_for(folder: Path):
+    out, asked = folder / "map.png", ("--x", M, "--y", KIND, "--panels", N)
+    assert failed("map", folder, *asked, "--value", "rms_x", "--out", out) == 0
+    assert out.read_bytes().startswith(b"\x89PNG")
+    figure = draw_study(read_runs(folder), ["rms_x"], x=M, y=KIND, panels=N)
+    told = (axes.get_title() for axes in figure.axes)
+    titles = [" ".join(title.split()) for title in told if title]
+    assert titles == [f"command delay n [ticks] = {value}" for value in (0, 10, 20)]
+    lines = draw_study(read_runs(folder), ["rms_x"], panels=N)
+    assert [each.get_text() for each in lines.legends[0].get_texts()] == titles
 
 
 def test_titles_of_panels_are_no_wider_than_these():

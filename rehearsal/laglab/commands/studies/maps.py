@@ -15,6 +15,9 @@ def map_study(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="What a study left.")],
     x: Annotated[str | None, typer.Option(metavar="KEY", help="Of the grid, to the right.")] = None,
     y: Annotated[str | None, typer.Option(metavar="KEY", help="Of the grid, upwards.")] = None,
+    panels: Annotated[
+        str | None, typer.Option(metavar="KEY", help="Of the grid, a panel or line for each value.")
+    ] = None,
     value: Annotated[
         list[str] | None,
         typer.Option(
@@ -30,5 +33,5 @@ def map_study(
     """
     require(MAPPING)
     picture_place(out)
-    save(draw_study(read_runs(folder), value or (), x, y), out)
+    save(draw_study(read_runs(folder), value or (), x, y, panels), out)
     print(out)

@@ -26,13 +26,14 @@ def draw_study(
     values: Sequence[str] = (),
     x: str | None = None,
     y: str | None = None,
+    panels: str | None = None,
 ) -> Figure:
     """A row of panels for each of the columns `values`, on one scale; a panel for each value of a
-    third key. Other keys are taken together, as the title says.
+    third key, `panels`. Other keys are taken together, as the title says.
 
     Raises: StudyError, when there is no such key or column, or nothing to draw along.
     """
-    chosen = layout(runs, x, y)
+    chosen = layout(runs, x, y, panels)
     told = [MeasureValues.by(runs, column) for column in values] or telling(runs)
     into = sorted_into(runs, chosen)
     maps = [Map(each.of, fields(each, into)) for each in told]

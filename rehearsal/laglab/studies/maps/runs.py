@@ -79,20 +79,16 @@ class Layout(NamedTuple):
     averaged: tuple[str, ...]
 
 
-def layout(runs: StudyRuns, x: str | None = None, y: str | None = None) -> Layout:
+def layout(
+    runs: StudyRuns, x: str | None = None, y: str | None = None, panels: str | None = None
+) -> Layout:
     """The two keys with the most values, numbers first, are x and y; panels are made by a key that
     is on no scale, as a filter's name, and else by the next one.
 
-    Raises: StudyError, when `x` or `y` is no key of the grid, or nothing was varied.
+    Raises: StudyError, when one that is given is no key of the grid, or nothing was varied.
     """
-    for option, key in (("--x", x), ("--y", y)):
-        if key is not None and key not in runs.grid:
-            raise StudyError(
-                f"{option}: {key!r} is not a key of this study's grid: {', '.join(runs.grid)}"
-            )
-    if x is not None and x == y:
-        raise StudyError(f"--x and --y are both {x!r}: take two keys")
-    left = [key for key in _by_size(runs) if key not in (x, y)]
+    _check(runs, {"--x": x, "--y": y, "--panels": panels})
+    left = [key for key in _by_size(runs) if key not in (x, y, panels)]
     numeric = [key for key in left if runs.is_numeric(key)]
     if x is None:
         x = (numeric or left or [None])[0]  # type: ignore[list-item]
@@ -103,8 +99,28 @@ def layout(runs: StudyRuns, x: str | None = None, y: str | None = None) -> Layou
         y = numeric[0]
     left = [key for key in left if key != y]
     few = [key for key in left if len(runs.values(key)) <= MOST_PANELS]
-    panels = next((key for key in few if not runs.is_numeric(key)), few[0] if few else None)
+    if panels is None:
+        panels = next((key for key in few if not runs.is_numeric(key)), few[0] if few else None)
     return Layout(x, y, panels, tuple(key for key in left if key != panels))
+
+
+def _check(runs: StudyRuns, asked: Mapping[str, str | None]) -> None:
+    """Raises StudyError: what an option asks for is no key of the grid, or another's."""
+    by_key: dict[str, str] = {}
+    for option, key in asked.items():
+        if key is None:
+            continue
+        if key not in runs.grid:
+            raise StudyError(
+                f"{option}: {key!r} is not a key of this study's grid: {', '.join(runs.grid)}"
+            )
+        if key in by_key:
+            raise StudyError(f"{by_key[key]} and {option} are both {key!r}: take two keys")
+        by_key[key] = option
+    if (key := asked["--panels"]) and (many := len(runs.values(key))) > MOST_PANELS:
+        raise StudyError(
+            f"--panels: {key} has {many} values, and {MOST_PANELS} panels have room: take another"
+        )
 
 
 def _by_size(runs: StudyRuns) -> list[str]:
