@@ -22,12 +22,16 @@ def folder_place(named: str, path: Path) -> Path:
     `named` is how the command line calls it.
     """
     _refuse_nameless(named, path)
+    new = [each for each in (path, *path.parents) if not os.path.lexists(each)]
     try:
         path.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=path).close()
     except (FileExistsError, NotADirectoryError):
         raise PlaceError(f"{named} {path}: that is a file: results go into a folder") from None
     except OSError as error:
+        for each in new:  # those above it that could be made
+            with suppress(OSError):
+                each.rmdir()
         raise PlaceError(f"{named} {path}: cannot write there: {error.strerror}") from error
     return path
 
