@@ -138,6 +138,8 @@ def test_a_name_of_a_scenario_that_is_too_long_for_a_folder_is_said(refused: Ref
     Path("own.toml").write_text(f'name = "{LONG_NAME}"\nduration = 0.1\n')
     assert "File name too long" in refused("run", "own.toml", "--transport", "inline")
     assert not Path("runs").exists()
+    assert "File name too long" in refused("run", "fig6", "--out", f"a/b/{LONG_NAME}")
+    assert not Path("a").exists()
 
 
 @pytest.mark.parametrize(

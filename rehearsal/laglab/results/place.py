@@ -56,6 +56,7 @@ def withdraw(directory: Path) -> None:
 
 def fresh(parent: Path, name: str) -> Path:
     """``parent/name``, or with a number behind it where somebody else's results are."""
+    there = parent.exists()
     folder_place("the folder", parent)
     number = 1
     while True:
@@ -65,6 +66,9 @@ def fresh(parent: Path, name: str) -> Path:
         except FileExistsError:
             number += 1
         except OSError as error:
+            if not there:
+                with suppress(OSError):
+                    parent.rmdir()
             raise PlaceError(f"cannot make the folder {directory}: {error.strerror}") from error
         else:
             return directory
