@@ -153,11 +153,14 @@ def test_a_run_with_a_real_robot_says_that_its_pose_is_measured(
     robot = start(firmware, "--speed", UNHURRIED, port)
     said, errors = run.communicate(timeout=30)
     assert run.returncode == 0, errors
-    assert "as measured" in said
+    assert "rad as measured over the last second" in " ".join(said.split())
     assert_robot_let_go(robot)
     summary = json.loads((tmp_path / "run" / "summary.json").read_text())
     assert (summary["pose"], summary["ticks"]) == ("measured", 200)
-    assert summary["final"]["rho"] > 2
+    trace = np.genfromtxt(tmp_path / "run" / "trace.csv", delimiter=",", names=True)
+    late = trace[trace["time"] >= trace["time"][-1] - 1.0]
+    rho = np.hypot(np.nanmean(late["x_meas"]), np.nanmean(late["y_meas"]))
+    assert summary["final"]["rho"] == pytest.approx(rho)
     assert summary["rms_error"]["x"] < 0.03
     link = summary["link"]
     assert link["measurement"]["measured"]["mean"] == M

@@ -13,7 +13,13 @@ from laglab.errors import RefusedError, RunError, UndrawableError
 from laglab.results.columns import Columns, columns_of
 from laglab.results.digest import Digest, digest, followed
 from laglab.results.figures import save_figure
-from laglab.results.numbers import goal_errors, has_converged, robot_pose
+from laglab.results.numbers import (
+    goal_errors,
+    has_converged,
+    is_measured,
+    off_in_the_end,
+    robot_pose,
+)
 from laglab.results.place import withdraw
 from laglab.results.run import Kept, Run
 from laglab.results.shadows import (
@@ -205,8 +211,12 @@ def _after_alarms(station: StationReport | None) -> str:
 
 
 def _final(end: Trace, wanted: NDArray[np.float64]) -> Final:
-    """At the last tick; of what is told later or not at all, the last that is known."""
-    rho, theta_error = goal_errors(robot_pose(end), wanted)
+    """At the last tick; of what is told later or not at all, the last that is known. A pose that is
+    measured is that of the last second, by which it is judged."""
+    if is_measured(end):
+        rho, theta_error = goal_errors(off_in_the_end(end, wanted), (0.0, 0.0, 0.0))
+    else:
+        rho, theta_error = goal_errors(robot_pose(end), wanted)
     numbers = _last(rho), _last(theta_error), _last(end["v"]), _last(end["omega"])
     return Final(*(float(number) if abs(number) < float("inf") else None for number in numbers))
 
@@ -248,4 +258,5 @@ def _verdict(
         )
     if final.rho is None or final.theta_error is None:
         return f"{word}: where the robot is at the end is not known"
+    seen = " as measured over the last second" if measured else ""
     return f"{word}: at the end ρ = {final.rho:.3g} m, θ error = {final.theta_error:.3g} rad{seen}"

@@ -87,15 +87,21 @@ def last_second(time: Array) -> NDArray[np.bool_]:
 
 
 def has_converged(trace: Trace, goal: Goal) -> bool:
-    """Whether it was at the goal at every tick of the last second.
+    """Whether it was at the goal at every tick of the last second."""
+    off = off_in_the_end(trace, goal)
+    return len(off) > 0 and bool(at_goal(off, (0.0, 0.0, 0.0)).all())
 
-    Where the pose is measured, in the second's mean: the sensor's noise does not move the robot.
+
+def off_in_the_end(trace: Trace, goal: Goal) -> Array:
+    """(ticks, 3), pose less goal at the ticks of the last second [m, m, rad].
+
+    Where the pose is measured, the second's mean alone: the sensor's noise does not move the robot.
     """
     off = pose_difference(robot_pose(trace), np.asarray(goal))[last_second(trace["time"])]
-    if is_measured(trace):
-        off = off[~np.isnan(off).any(axis=1)]
-        off = off.mean(axis=0, keepdims=True) if len(off) else off
-    return len(off) > 0 and bool(at_goal(off, (0.0, 0.0, 0.0)).all())
+    if not is_measured(trace):
+        return off
+    off = off[~np.isnan(off).any(axis=1)]
+    return off.mean(axis=0, keepdims=True) if len(off) else off
 
 
 class RmsError:

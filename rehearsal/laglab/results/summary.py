@@ -37,8 +37,8 @@ class Following(Struct, frozen=True):
 
 
 class Final(Struct, frozen=True):
-    """The robot at the last tick: errors to the goal, or to where its path wanted it [m, rad],
-    speeds in force [m/s, rad/s].
+    """The robot at the last tick: errors to the goal, or to where its path wanted it [m, rad], as
+    measured those of the last second's mean; speeds in force [m/s, rad/s].
 
     None where nothing is known, or it is not finite.
     """
