@@ -47,5 +47,5 @@ class Durations:
             return None
         if self._waiting:
             self._sort_in()
-        at = self._histogram.get_value_at_percentile
-        return Quantiles(at(50) * 1e-9, at(99) * 1e-9, self._longest * 1e-9)
+        at = self._histogram.get_percentile_to_value_dict([50, 99])
+        return Quantiles(at[50] * 1e-9, at[99] * 1e-9, self._longest * 1e-9)
