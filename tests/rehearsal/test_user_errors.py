@@ -59,6 +59,9 @@ WRONG = [
     (["controller", "fig6", "--endpoint", "serial:///dev/ttyNONE9:57600"], "/dev/ttyNONE9"),
     (["run", "lab", "--transport", "inline", "--plant", "pty://p"], "--plant: a real robot does"),
     (["gateway", "lab", "--plant", "/dev/ttyNONE9,57600"], "/dev/ttyNONE9"),
+    (["run", "lab", "--plant", "pty://p", "--fmi", "2"], "plant.fmi: the robot at pty://p has"),
+    (["gateway", "lab", "--plant", "pty://p", "--pace", "realtime"], "pace: the robot at pty://p"),
+    (["gateway", "lab", "--plant", "pty://p", "--set", "speed=2"], "speed: the robot at pty://p"),
     (["gateway", "lab", "--plant", "udpin://0.0.0.0:0"], "can be reached from outside"),
     (["compare", "nowhere"], "nowhere"),
 ]

@@ -7,7 +7,7 @@ from typing import Annotated, Any, NamedTuple
 import typer
 
 from laglab.errors import ScenarioError
-from laglab.scenario import assignment, load, read_timeline, shipped_names
+from laglab.scenario import Overrides, Scenario, assignment, load, read_timeline, shipped_names
 from laglab.scenario.keys import NO_UNIT, rows
 from laglab.tables import say
 from laglab_control import ESTIMATORS
@@ -63,6 +63,8 @@ OWN: dict[str, Own] = {
     "plant.fmi": Own(int | None, "--fmi"),
 }
 """Dotted key of a scenario → its option, which says what the key says."""
+OF_A_SIMULATED_ROBOT = {"pace", "speed", "plant.fmi"}
+"""Keys that nobody reads in front of a real one."""
 OF_SEVERAL_KEYS: dict[str, Any] = {
     "estimator": EstimatorsOption,
     "timeline": Annotated[
@@ -119,6 +121,18 @@ def _parameters(by_default: object, estimators: bool) -> Iterator[inspect.Parame
         yield inspect.Parameter(_parameter(key), keyword, default=option, annotation=own.type)
 
 
+def _refuse_idle(overrides: Overrides, loaded: Scenario, real: str | None) -> None:
+    """Raises ScenarioError: nobody would read what somebody asks for."""
+    if "plant.fmi" in overrides and not loaded.plant.ships:
+        called = loaded.plant.called
+        raise ScenarioError(f"plant.fmi: {called} is as it was brought: leave --fmi out")
+    if real and (idle := sorted(overrides.keys() & OF_A_SIMULATED_ROBOT)):
+        raise ScenarioError(
+            f"{idle[0]}: the robot at {real} has a clock of its own, and is what it is: leave it "
+            "out, or --plant"
+        )
+
+
 def on_scenario(
     command: Callable[..., None],
     by_default: object = inspect.Parameter.empty,
@@ -134,9 +148,7 @@ def on_scenario(
     def wrapper(scenario: str, **options: Any) -> None:
         overrides = _overrides(options)
         loaded = load(scenario, overrides, say)
-        if "plant.fmi" in overrides and not loaded.plant.ships:
-            called = loaded.plant.called
-            raise ScenarioError(f"plant.fmi: {called} is as it was brought: leave --fmi out")
+        _refuse_idle(overrides, loaded, options.get("plant"))
         command(loaded, **options)
 
     keyword = inspect.Parameter.KEYWORD_ONLY
