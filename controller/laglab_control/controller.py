@@ -13,9 +13,9 @@ from laglab_control.errors import PluginError
 from laglab_control.estimators.brought import Brought
 from laglab_control.estimators.family import EstimatorKind, estimator_kind
 from laglab_control.estimators.interface import (
-    Applied,
     Calibration,
     Estimator,
+    InForce,
     Measured,
     State,
     claim_of,
@@ -117,7 +117,7 @@ class Controller:
         control: Control,
         measurements: Sequence[Measured],
         echoes: Sequence[Echo] = (),
-        recalled: Sequence[Applied] = (),
+        recalled: Sequence[InForce] = (),
     ) -> Control:
         """The tick's correction and command, from all that arrived.
 
@@ -154,7 +154,7 @@ class Controller:
         control: Control,
         measurements: Sequence[Measured],
         echoes: Sequence[Echo] = (),
-        recalled: Sequence[Applied] = (),
+        recalled: Sequence[InForce] = (),
     ) -> Control:
         """The tick's correction alone; `drive` is still the last command. Raises StampError."""
         estimate, flight, pose, P = self._corrected(control, measurements, echoes, recalled)
@@ -165,7 +165,7 @@ class Controller:
         control: Control,
         measurements: Sequence[Measured],
         echoes: Sequence[Echo],
-        recalled: Sequence[Applied],
+        recalled: Sequence[InForce],
     ) -> tuple[State, Flight, Vector | None, Matrix | None]:
         estimate, flight = control.estimate, control.flight
         flight, inputs = hear(self._robot(estimate), flight, echoes, recalled)

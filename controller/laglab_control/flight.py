@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from operator import mul
 from typing import NamedTuple
 
-from laglab_control.estimators.interface import Applied
+from laglab_control.estimators.interface import InForce
 from laglab_control.laws.interface import STAND, Demand
 from laglab_control.model import Vector
 from laglab_control.motion import NOWHERE, Way, joined
@@ -70,14 +70,14 @@ class Told(NamedTuple):
         return sorted(self.recent)[len(self.recent) // 2] if self.spread else self.recent[0]
 
     def after(
-        self, tick: int, echoes: Sequence[Echo], recalled: Sequence[Applied]
-    ) -> "tuple[Told, list[Applied]]":
+        self, tick: int, echoes: Sequence[Echo], recalled: Sequence[InForce]
+    ) -> "tuple[Told, list[InForce]]":
         """With what came at `tick`; and the inputs that are known by it."""
         told = self
-        inputs: list[Applied] = []
+        inputs: list[InForce] = []
         for echo in echoes:
             told = _heard(told, echo, tick)
-            inputs.append(Applied(echo.tick, echo.u))
+            inputs.append(InForce(echo.tick, echo.u))
         inputs += recalled
         return _found(told, inputs, tick) if told.missing else told, inputs
 
@@ -164,8 +164,8 @@ def hear(
     robot: Ways,
     flight: Flight,
     echoes: Sequence[Echo],
-    recalled: Sequence[Applied] = (),
-) -> tuple[Flight, list[Applied]]:
+    recalled: Sequence[InForce] = (),
+) -> tuple[Flight, list[InForce]]:
     """With n as the echoes tell; and the inputs that were in force, as far as they are now known:
     from the echoes, and from what the robot was asked to recall.
 
@@ -223,7 +223,7 @@ def _deviation(delays: tuple[int, ...]) -> float:
     return math.sqrt(count * sum(map(mul, delays, delays)) - total**2) / count
 
 
-def _found(told: Told, inputs: Sequence[Applied], tick: int) -> Told:
+def _found(told: Told, inputs: Sequence[InForce], tick: int) -> Told:
     """Without the ticks that are no longer missing, or that nobody will tell of any more."""
     now_known = {applied.tick for applied in inputs}
     missing = tuple(
@@ -239,10 +239,10 @@ def _rebuilt(robot: Ways, flight: Flight) -> Flight:
     return flight._replace(in_flight=in_flight, ahead=in_flight.product)
 
 
-def _believed(flight: Flight, since: int) -> list[Applied]:
+def _believed(flight: Flight, since: int) -> list[InForce]:
     """What was in force from tick `since` to the present, if each command took n ticks."""
     u = _believed_since(flight, since - flight.command_delay)
-    return [Applied(tick, u[tick - since]) for tick in range(since, flight.tick)]
+    return [InForce(tick, u[tick - since]) for tick in range(since, flight.tick)]
 
 
 def _sent_after(sent: Log[Sent], u: Vector) -> Sent:

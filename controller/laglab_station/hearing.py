@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 import laglab_protocol as protocol
-from laglab_control import Applied, Echo, Measured
+from laglab_control import Echo, InForce, Measured
 from laglab_protocol import UNANNOUNCED, Measurement, Playout
 
 
@@ -99,7 +99,7 @@ def echoes(messages: Sequence[Measurement], first: int, tick: int) -> list[Echo]
     return [_echo(message, first) for message in messages if first < message.tick <= tick]
 
 
-def recalled(messages: Sequence[protocol.Applied], first: int, tick: int) -> list[Applied]:
+def recalled(messages: Sequence[protocol.Applied], first: int, tick: int) -> list[InForce]:
     """The inputs at ticks before the present one, as far as the robot recalls them."""
     if not messages:
         return []
@@ -109,7 +109,7 @@ def recalled(messages: Sequence[protocol.Applied], first: int, tick: int) -> lis
         for i in range(min(message.count, len(message.v)))
     ]
     return [
-        Applied(j, np.array((v, omega)))
+        InForce(j, np.array((v, omega)))
         for j, v, omega in told
         if 0 <= j < tick - first and isfinite(v) and isfinite(omega)
     ]

@@ -19,7 +19,7 @@ from laglab_fmu.errors import (
     WiringError,
 )
 from laglab_fmu.others import OtherParameters
-from laglab_fmu.parameters import INTEGRATIONS, Parameters, Reading, RobotParameters
+from laglab_fmu.parameters import INTEGRATIONS, Reading, RobotParameters, ShippedParameters
 
 if TYPE_CHECKING:
     from laglab_fmu.archive.build import build_fmus
@@ -42,10 +42,10 @@ __all__ = [
     "FmuFileError",
     "FmuNotBuiltError",
     "OtherParameters",
-    "Parameters",
     "Reading",
     "Robot",
     "RobotParameters",
+    "ShippedParameters",
     "WiringError",
     "build_fmus",
     "c_compiler",

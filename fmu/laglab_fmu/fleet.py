@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from laglab_fmu.models import Model, model_named
-from laglab_fmu.parameters import Parameters
+from laglab_fmu.parameters import ShippedParameters
 from laglab_fmu.slave import Slave3, fleet_path
 from laglab_fmu.stepper import OUTPUTS, Stepper
 
@@ -26,7 +26,7 @@ class Fleet(Stepper):
     """
 
     @classmethod
-    def open(cls, robots: Sequence[Parameters]) -> Self:
+    def open(cls, robots: Sequence[ShippedParameters]) -> Self:
         """Robots at their start poses, tick 0 sampled; robot i moves as one alone of robots[i].
 
         Raises:
@@ -37,7 +37,7 @@ class Fleet(Stepper):
         """
         return cls(robots)
 
-    def __init__(self, robots: Sequence[Parameters]) -> None:
+    def __init__(self, robots: Sequence[ShippedParameters]) -> None:
         model = self._model = common_model(robots)
         make = partial(Slave3, model=model, fleet=True)
         super().__init__(fleet_path(model.name), make, robots, model.inputs)
@@ -67,7 +67,7 @@ class Fleet(Stepper):
         self.advance()
         return self.readings
 
-    def reset(self, robots: Sequence[Parameters]) -> None:
+    def reset(self, robots: Sequence[ShippedParameters]) -> None:
         """Starts again with as many robots, without loading anything anew.
 
         Raises:
@@ -82,7 +82,7 @@ class Fleet(Stepper):
         self.fetch()
 
 
-def common_model(robots: Sequence[Parameters]) -> Model:
+def common_model(robots: Sequence[ShippedParameters]) -> Model:
     """What all the robots are. Raises ValueError: there is no robot, or they differ."""
     models = {robot.model for robot in robots}
     if len(models) != 1:

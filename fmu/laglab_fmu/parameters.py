@@ -12,7 +12,7 @@ INTEGRATIONS = (
 LARGEST_SEED = 2**31 - 1
 
 
-class Parameters(Protocol):
+class ShippedParameters(Protocol):
     """Of one robot of any model that ships."""
 
     @property

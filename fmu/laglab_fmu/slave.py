@@ -23,7 +23,7 @@ from fmpy.fmi3 import FMU3Slave
 from laglab_fmu.compiler import host_platform
 from laglab_fmu.errors import CallError, FmuNotBuiltError
 from laglab_fmu.models import ROBOT, Kind, Model, Role, model_named, token
-from laglab_fmu.parameters import Parameters, values
+from laglab_fmu.parameters import ShippedParameters, values
 
 VERSIONS = (2, 3)
 
@@ -82,7 +82,7 @@ class Slave(Protocol):
     log: list[str]
     """What the FMU has logged."""
 
-    def initialize(self, robots: Sequence[Parameters]) -> None: ...
+    def initialize(self, robots: Sequence[ShippedParameters]) -> None: ...
     def reset(self) -> None: ...
     def free(self) -> None: ...
     def setter(self, names: Sequence[str], array: ctypes.c_void_p, size: int) -> Call: ...
@@ -111,7 +111,7 @@ class Slave2:
     def _logged(self, _where: Any, _name: bytes, _status: int, _kind: bytes, text: bytes) -> None:
         self.log.append(text.decode().replace("%%", "%"))
 
-    def initialize(self, robots: Sequence[Parameters]) -> None:
+    def initialize(self, robots: Sequence[ShippedParameters]) -> None:
         _set_parameters(self.fmu, ROBOT, _SETTERS_2, robots)
         self.fmu.setupExperiment(startTime=0.0)
         self.fmu.enterInitializationMode()
@@ -150,7 +150,7 @@ class Slave3:
     def _logged(self, _environment: Any, _status: int, _category: bytes, message: bytes) -> None:
         self.log.append(message.decode())
 
-    def initialize(self, robots: Sequence[Parameters]) -> None:
+    def initialize(self, robots: Sequence[ShippedParameters]) -> None:
         if self.fleet:
             self.fmu.enterConfigurationMode()
             self.fmu.setUInt64([self.model.reference["robots"]], [len(robots)])
@@ -187,7 +187,7 @@ def _set_parameters(
     fmu: FMU2Slave | FMU3Slave,
     model: Model,
     setters: Mapping[str, Sequence[Kind]],
-    robots: Sequence[Parameters],
+    robots: Sequence[ShippedParameters],
 ) -> None:
     rows = [robot.by_name() for robot in robots]
     for setter, kinds in setters.items():
@@ -254,7 +254,7 @@ def _is_needed(name: str) -> bool:
     return name.startswith(own)
 
 
-def initialize(slave: Slave, robots: Sequence[Parameters]) -> None:
+def initialize(slave: Slave, robots: Sequence[ShippedParameters]) -> None:
     """Gives a fresh or reset instance its parameters and starts it.
 
     Raises:

@@ -8,7 +8,7 @@ from typing import Self
 
 from laglab_fmu.errors import CallError
 from laglab_fmu.models import ROBOT
-from laglab_fmu.parameters import Parameters, Reading
+from laglab_fmu.parameters import Reading, ShippedParameters
 from laglab_fmu.slave import Slave, initialize, open_slave
 
 INPUTS = ROBOT.inputs
@@ -26,7 +26,7 @@ class Stepper:
         self,
         path: Path,
         make: Callable[[str], Slave],
-        robots: Sequence[Parameters],
+        robots: Sequence[ShippedParameters],
         inputs: Sequence[str] = INPUTS,
     ) -> None:
         sample_time = common_sample_time(robots)
@@ -67,7 +67,7 @@ class Stepper:
         self._slave.log.clear()
         return CallError(f"tick {self._tick}: {message}")
 
-    def restart(self, robots: Sequence[Parameters]) -> None:
+    def restart(self, robots: Sequence[ShippedParameters]) -> None:
         """Starts again with other parameters, without loading anything anew.
 
         Raises:
@@ -96,7 +96,7 @@ def _closed() -> int:
     raise CallError("the FMU instance has been closed; open another")
 
 
-def common_sample_time(robots: Sequence[Parameters]) -> float:
+def common_sample_time(robots: Sequence[ShippedParameters]) -> float:
     """The sample time of all the robots.
 
     Raises:

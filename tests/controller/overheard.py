@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import laglab
-from laglab_control import Applied, Control, Controller, Echo, Measured, StationConfig
+from laglab_control import Control, Controller, Echo, InForce, Measured, StationConfig
 
 SEEDS = (1, 2)
 TICKS = 200
@@ -45,7 +45,7 @@ class Overheard(Controller):
         control: Control,
         measurements: Sequence[Measured],
         echoes: Sequence[Echo] = (),
-        recalled: Sequence[Applied] = (),
+        recalled: Sequence[InForce] = (),
     ) -> Control:
         control = super().answer(control, measurements, echoes, recalled)
         self.heard.append(Heard(measurements, control.estimate.x, control.estimate.P))

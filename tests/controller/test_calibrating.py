@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 import laglab
 from laglab_control import (
-    Applied,
     CalibratingEkf,
     Controller,
+    InForce,
     Measured,
     RobotModel,
     Taken,
@@ -135,7 +135,7 @@ def test_a_wrong_input_is_put_right(parameters):
     for k, arrived in enumerate(constant_delay(z, 20)):
         wrong = np.zeros(2) if k == 50 else inputs[k - 1]
         state = estimator.predict(state, wrong) if k else state
-        told = [Applied(49, inputs[49])] if k == TICKS else []
+        told = [InForce(49, inputs[49])] if k == TICKS else []
         state = estimator.correct(state, arrived, told)
     x, P = plain_ekf(parameters, inputs, dict(enumerate(z[: TICKS - 20 + 1])))
     assert_same(*state.parameters, x[3:], P[3:, 3:])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from laglab_control import Applied, Echo, RobotModel
+from laglab_control import Echo, InForce, RobotModel
 from laglab_control.doubt import PATIENCE, doubt
 from laglab_control.flight import Flight, hear, send, take_off
 from laglab_control.model import Vector
@@ -109,7 +109,7 @@ def test_of_ticks_that_were_lost_too_until_the_robot_tells() -> None:
     flight = told(flight, flight.tick - M, TURNING[flight.tick - M - N])
     assert len(flight.told.missing) > 10
     assert doubt(flight, MODEL, X) is not None
-    recalled = [Applied(tick, TURNING[tick - N]) for tick in flight.told.missing]
+    recalled = [InForce(tick, TURNING[tick - N]) for tick in flight.told.missing]
     flight, _ = hear(MODEL, flight, [], recalled)
     assert flight.told.missing == ()
     assert doubt(flight, MODEL, X) is None

@@ -5,9 +5,9 @@ import pytest
 
 from laglab_control import (
     ESTIMATORS,
-    Applied,
     DelayedEkf,
     Ekf,
+    InForce,
     LiteralPopf,
     Measured,
     Popf,
@@ -143,7 +143,7 @@ def test_delayed_ekf_puts_a_wrong_input_right(record, wrong):
     state = estimator.start(record.poses[0], P0)
     for k, measurements in enumerate(arrivals):
         state = estimator.predict(state, believed[k - 1]) if k else state
-        told = [Applied(wrong, record.inputs[wrong])] if k == 300 else []
+        told = [InForce(wrong, record.inputs[wrong])] if k == 300 else []
         state = estimator.correct(state, measurements, told)
     right = run(estimator, record, 20)
     assert np.abs(state.x - right.estimates[-1]).max() < 1e-12

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from laglab_control import Backdated, DelayedEkf, Measured, RigidMotions, RobotModel, replay
-from laglab_control.estimators.interface import Applied
+from laglab_control.estimators.interface import InForce
 
 EXAMPLES = Path(__file__).parents[2] / "controller" / "examples"
 MOST_LINES = 60
@@ -85,7 +85,7 @@ def test_backdated_is_delayed_ekf_over_late_and_lost_measurements_and_wrong_inpu
         for k in range(40):
             state = estimator.correct(state, [Measured(k, z[k])] if k % 3 == 0 else [])
             state = estimator.predict(state, np.zeros(2))
-        told = [Applied(k, inputs[k]) for k in range(10, 30)]
+        told = [InForce(k, inputs[k]) for k in range(10, 30)]
         states.append(estimator.correct(state, [Measured(20, z[20])], told))
     assert states[0].x == pytest.approx(states[1].x, abs=1e-10)
     assert pytest.approx(states[1].P, abs=1e-12) == states[0].P

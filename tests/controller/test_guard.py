@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from laglab_control import ESTIMATORS, Applied, Controller, Guard, Measured, StationConfig
+from laglab_control import ESTIMATORS, Controller, Guard, InForce, Measured, StationConfig
 from laglab_control.guard import Watched
 from laglab_control.model import Matrix, Vector
 
@@ -90,7 +90,7 @@ def test_of_a_robot_that_is_found_again_the_heading_is_counted_on() -> None:
 
 def test_inputs_that_are_told_after_an_alarm_are_put_right_where_they_belong() -> None:
     """The robot was put elsewhere at tick 40; at ticks 60 ... 69 it stood, as is told later."""
-    stood = [Applied(j, np.zeros(2)) for j in range(59, 69)]
+    stood = [InForce(j, np.zeros(2)) for j in range(59, 69)]
     poses = driven(39)
     poses += driven(69, [U] * 19 + [each.u for each in stood] + [U] * 40, start=(2.0, -1.0, 0.5))
     guard = guarded()
@@ -178,7 +178,7 @@ def test_what_the_robot_did_unheard_proves_nothing() -> None:
         state = guard.correct(state, [measured[k]] if k < 100 or k > 160 else [], settled=99)
         assert state.alarm is None
     assert state.gated == 0
-    stood = [Applied(j, np.zeros(2)) for j in range(100, 199)]
+    stood = [InForce(j, np.zeros(2)) for j in range(100, 199)]
     known = guard.correct(state, [], stood, settled=198)
     assert np.hypot(*(known.x - poses[-1])[:2]) < 0.05
     assert guard.correct(known, [Measured(199, measured[199].z)], (), 198).alarm is None

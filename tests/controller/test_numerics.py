@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from laglab_control import (
     ESTIMATORS,
-    Applied,
+    InForce,
     Measured,
     RobotModel,
     StationConfig,
@@ -152,7 +152,7 @@ def test_no_float_makes_a_filter_raise(name, measurements, inputs):
         for k, u in enumerate(inputs, start=1):
             state = estimator.predict(state, u)
             arrived = [Measured(max(k - late, 0), z) for z, late in measurements[k - 1 : k]]
-            state = estimator.correct(state, arrived, [Applied(k - 1, inputs[-k])])
+            state = estimator.correct(state, arrived, [InForce(k - 1, inputs[-k])])
             assert state.x.shape == (3,)
             assert state.P.shape == (3, 3)
 

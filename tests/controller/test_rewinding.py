@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from laglab_control import ESTIMATORS, Applied, Measured, RobotModel
+from laglab_control import ESTIMATORS, InForce, Measured, RobotModel
 
 ROBOT = RobotModel()
 TICKS, M = 40, 6
@@ -22,7 +22,7 @@ def run(estimator, believed, told):
     for k in range(TICKS + 1):
         state = estimator.predict(state, believed[k - 1]) if k else state
         arrived = [Measured(k - M, MEASUREMENTS[k - M])] if k >= M else []
-        state = estimator.correct(state, arrived, [Applied(j, INPUTS[j]) for j in told.get(k, ())])
+        state = estimator.correct(state, arrived, [InForce(j, INPUTS[j]) for j in told.get(k, ())])
     return state
 
 

@@ -8,7 +8,7 @@ import pytest
 
 import laglab
 from laglab.scenario import load
-from laglab.studies.consistency import Sample, chi_square_bounds, judged, samples, verdicts
+from laglab.studies.consistency import Sample, chi_square_bounds, consistencies, judged, samples
 from laglab.studies.overhearing import Overhearing
 
 
@@ -28,14 +28,16 @@ def made_up(seed, scale):
     return Sample(error, np.ones((50, 3)), squared, squared, squared)
 
 
-def verdict(*samples):
-    (found,) = verdicts(["made up"], ({"made up": each} for each in samples), last_tick=49, m=0)
+def consistency(*samples):
+    (found,) = consistencies(
+        ["made up"], ({"made up": each} for each in samples), last_tick=49, m=0
+    )
     return found
 
 
 @pytest.mark.parametrize(("scale", "consistent"), [(1.0, True), (1.3, False), (0.7, False)])
 def test_too_sure_and_not_sure_enough_are_told_apart(scale, consistent):
-    judged = verdict(*(made_up(seed, scale) for seed in range(100)))
+    judged = consistency(*(made_up(seed, scale) for seed in range(100)))
     assert judged.consistent is consistent
     assert judged.nees.mean == pytest.approx(3 * scale**2, rel=0.05)
     assert np.sqrt(np.mean(judged.true**2)) == pytest.approx(scale, rel=0.02)
@@ -47,7 +49,7 @@ def test_a_diverged_seed_and_a_lost_covariance_are_counted():
     whole, cut = made_up(1, 1.0), made_up(2, 1.0)
     short = Sample(*(values[:20] for values in cut))
     indefinite = whole._replace(nees=np.where(np.arange(50) < 25, whole.nees, math.nan))
-    judged = verdict(whole, short, indefinite)
+    judged = consistency(whole, short, indefinite)
     assert judged.diverged == 1
     assert judged.indefinite == pytest.approx(25 / 120)
     assert judged.nees.seeds.tolist() == [3] * 20 + [2] * 5 + [1] * 25
@@ -59,7 +61,7 @@ def test_a_diverged_seed_and_a_lost_covariance_are_counted():
 def test_delayed_ekf_is_consistent_and_popf_and_ekf_are_too_sure():
     scenario = load("lab", {"duration": 2.0})
     names = ("ekf", "popf", "delayed-ekf")
-    got = verdicts(names, samples(scenario, names, seeds=24, workers=2), 200, 20)
+    got = consistencies(names, samples(scenario, names, seeds=24, workers=2), 200, 20)
     ekf, popf, delayed = got
     assert [each.estimator for each in got] == list(names)
     assert delayed.consistent

@@ -7,9 +7,9 @@ from laglab_control.estimators.delayed_ekf import DelayedEkf
 from laglab_control.estimators.ekf import Ekf
 from laglab_control.estimators.family import ESTIMATORS, EstimatorKind, estimator_kind
 from laglab_control.estimators.interface import (
-    Applied,
     Calibration,
     Estimator,
+    InForce,
     Measured,
     State,
     claim_of,
@@ -28,7 +28,6 @@ from laglab_control.estimators.windows import ReplayedInputs, RigidMotions
 __all__ = [
     "ESTIMATORS",
     "METHODS",
-    "Applied",
     "Backdated",
     "CalibratingEkf",
     "Calibration",
@@ -36,6 +35,7 @@ __all__ = [
     "Ekf",
     "Estimator",
     "EstimatorKind",
+    "InForce",
     "Innovation",
     "LiteralPopf",
     "Measured",

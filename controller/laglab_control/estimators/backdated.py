@@ -5,7 +5,7 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from laglab_control.estimators.interface import Applied, Estimator, Measured, by_sampling
+from laglab_control.estimators.interface import Estimator, InForce, Measured, by_sampling
 from laglab_control.estimators.kalman import Innovation
 from laglab_control.model import Matrix, Vector
 from laglab_control.robot import RobotModel
@@ -68,7 +68,7 @@ class Backdated(Estimator[BackdatedState]):
         self,
         state: BackdatedState,
         measurements: Sequence[Measured],
-        inputs: Sequence[Applied] = (),
+        inputs: Sequence[InForce] = (),
     ) -> BackdatedState:
         """Again from the oldest tick of which something new is known. Raises StampError."""
         past, first = list(state.past), state.tick + 1 - len(state.past)

@@ -8,9 +8,9 @@ import numpy as np
 
 from laglab_control.errors import ControlError, PluginFailedError
 from laglab_control.estimators.interface import (
-    Applied,
     Calibration,
     Estimator,
+    InForce,
     Measured,
     State,
     pose_of,
@@ -70,7 +70,7 @@ class Brought(Estimator[State]):
         return self._whole("predict", self._said("predict", state, u), state.tick + 1)
 
     def correct(
-        self, state: State, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
+        self, state: State, measurements: Sequence[Measured], inputs: Sequence[InForce] = ()
     ) -> State:
         """With what arrived."""
         corrected = self._said("correct", state, measurements, inputs)

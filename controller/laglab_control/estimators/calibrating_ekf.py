@@ -9,7 +9,7 @@ import numpy as np
 
 from laglab_control.estimators.calibrated import CalibratedMotions, CalibratedRobot, Learned
 from laglab_control.estimators.delayed_ekf import DelayedEkf, DelayedState
-from laglab_control.estimators.interface import Applied, Calibration, Estimator, Measured
+from laglab_control.estimators.interface import Calibration, Estimator, InForce, Measured
 from laglab_control.estimators.kalman import Belief, Innovation
 from laglab_control.estimators.parameters import Parameters
 from laglab_control.model import Matrix, Vector
@@ -75,7 +75,7 @@ class CalibratingEkf(Estimator[CalibratingState]):
         self,
         state: CalibratingState,
         measurements: Sequence[Measured],
-        inputs: Sequence[Applied] = (),
+        inputs: Sequence[InForce] = (),
     ) -> CalibratingState:
         """As `delayed-ekf` does."""
         joint = self._ekf.correct(state.joint, measurements, inputs)

@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import Generic, NamedTuple, TypeVar
 
 from laglab_control.estimators import kalman
-from laglab_control.estimators.interface import Applied, Estimator, Measured, by_sampling
+from laglab_control.estimators.interface import Estimator, InForce, Measured, by_sampling
 from laglab_control.estimators.kalman import Belief, Innovation
 from laglab_control.estimators.windows import Windows
 from laglab_control.model import Matrix, Model, Vector
@@ -86,7 +86,7 @@ class DelayedEkf(Estimator[DelayedState[W]]):
         self,
         state: DelayedState[W],
         measurements: Sequence[Measured],
-        inputs: Sequence[Applied] = (),
+        inputs: Sequence[InForce] = (),
     ) -> DelayedState[W]:
         """Roll back to the oldest news, replay from there, then go on to the newest measurement."""
         measurements = by_sampling(measurements, state.tick)

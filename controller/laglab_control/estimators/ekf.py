@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from laglab_control.estimators import kalman
-from laglab_control.estimators.interface import Applied, Estimator, Measured, by_sampling
+from laglab_control.estimators.interface import Estimator, InForce, Measured, by_sampling
 from laglab_control.estimators.kalman import Belief, Innovation
 from laglab_control.model import Matrix, Model, Vector
 
@@ -36,7 +36,7 @@ class Ekf(Estimator[EkfState]):
         return EkfState(state.tick + 1, x, P, state.newest, innovation=None)
 
     def correct(
-        self, state: EkfState, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
+        self, state: EkfState, measurements: Sequence[Measured], inputs: Sequence[InForce] = ()
     ) -> EkfState:
         """(8) for every measurement newer than all before; it has no past to correct."""
         tick, x, P, newest, innovation = state

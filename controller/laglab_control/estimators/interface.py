@@ -9,7 +9,7 @@ from laglab_control.model import Matrix, Vector
 from laglab_control.robot import Ways
 
 
-class Applied(NamedTuple):
+class InForce(NamedTuple):
     """The input u (p,) was in force on [t_tick, t_{tick+1})."""
 
     tick: int
@@ -106,7 +106,7 @@ class Estimator(Protocol[S]):
         ...
 
     def correct(
-        self, state: S, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
+        self, state: S, measurements: Sequence[Measured], inputs: Sequence[InForce] = ()
     ) -> S:
         """With all that arrived at this tick: none, one or many, in any order, perhaps repeated.
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from laglab_control.estimators.interface import Applied, Estimator, Measured, by_sampling
+from laglab_control.estimators.interface import Estimator, InForce, Measured, by_sampling
 from laglab_control.estimators.kalman import Belief, Innovation, gain, measured, times
 from laglab_control.model import Matrix, Model, Vector, identity, symmetric
 from laglab_control.past.history import History
@@ -99,7 +99,7 @@ class Popf(Estimator[PopfState]):
         return PopfState(tick + 1, *prior, prior, Used(identity(len(x)), past, used))
 
     def correct(
-        self, state: PopfState, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
+        self, state: PopfState, measurements: Sequence[Measured], inputs: Sequence[InForce] = ()
     ) -> PopfState:
         """(28) for every measurement that is not a repeat and not too old."""
         for s, z in by_sampling(measurements, state.tick):

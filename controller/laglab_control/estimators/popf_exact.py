@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from laglab_control.estimators.interface import Applied, Estimator, Measured, by_sampling
+from laglab_control.estimators.interface import Estimator, InForce, Measured, by_sampling
 from laglab_control.estimators.kalman import Innovation, gain
 from laglab_control.model import Matrix, Model, Vector, symmetric
 
@@ -59,7 +59,7 @@ class PopfExact(Estimator[ExactState]):
         return ExactState(state.tick + 1, x, P, row, (*priors, Prior(x, row)), state.newest, None)
 
     def correct(
-        self, state: ExactState, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
+        self, state: ExactState, measurements: Sequence[Measured], inputs: Sequence[InForce] = ()
     ) -> ExactState:
         """(11) for every measurement newer than all before."""
         for s, z in by_sampling(measurements, state.tick):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from laglab_control.estimators.interface import Applied, Estimator, Measured, by_sampling
+from laglab_control.estimators.interface import Estimator, InForce, Measured, by_sampling
 from laglab_control.estimators.kalman import Belief, Innovation
 from laglab_control.model import Matrix, Model, Vector, identity
 from laglab_control.past.log import Log, append, logged
@@ -62,7 +62,7 @@ class LiteralPopf(Estimator[LiteralState]):
         self,
         state: LiteralState,
         measurements: Sequence[Measured],
-        inputs: Sequence[Applied] = (),
+        inputs: Sequence[InForce] = (),
     ) -> LiteralState:
         """(28) for each measurement that has not been used yet, oldest first."""
         for s, z in by_sampling(measurements, state.tick):

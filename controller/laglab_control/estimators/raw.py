@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from laglab_control.estimators.interface import Applied, Estimator, Measured, by_sampling
+from laglab_control.estimators.interface import Estimator, InForce, Measured, by_sampling
 from laglab_control.estimators.kalman import Innovation
 from laglab_control.model import Matrix, Vector
 
@@ -34,7 +34,7 @@ class Raw(Estimator[RawState]):
         return RawState(tick + 1, x, newest)
 
     def correct(
-        self, state: RawState, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
+        self, state: RawState, measurements: Sequence[Measured], inputs: Sequence[InForce] = ()
     ) -> RawState:
         """The newest measurement; those older than one already seen are of no use to it."""
         for tick, z in by_sampling(measurements, state.tick):

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Generic, NamedTuple, TypeVar
 
-from laglab_control.estimators.interface import Applied, Estimator, Measured, State
+from laglab_control.estimators.interface import Estimator, InForce, Measured, State
 from laglab_control.estimators.kalman import Innovation
 from laglab_control.model import Matrix, Vector
 from laglab_control.past.log import Log, append, cut, logged
@@ -70,7 +70,7 @@ class Rewinding(Estimator[RewindingState[S]]):
         self,
         state: RewindingState[S],
         measurements: Sequence[Measured],
-        inputs: Sequence[Applied] = (),
+        inputs: Sequence[InForce] = (),
     ) -> RewindingState[S]:
         """First the inputs, then the measurements."""
         known = {j: u for j, u in inputs if 0 <= j < state.tick}

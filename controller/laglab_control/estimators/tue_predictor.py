@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from laglab_control.angle import direction, wrap
-from laglab_control.estimators.interface import Applied, Estimator, Measured, by_sampling
+from laglab_control.estimators.interface import Estimator, InForce, Measured, by_sampling
 from laglab_control.estimators.kalman import Innovation
 from laglab_control.limits import Positive, check
 from laglab_control.model import Matrix, Vector
@@ -63,7 +63,7 @@ class TuePredictor(Estimator[TueState]):
         return TueState(tick + 1, there, P, newest, append(past, there, MEMORY))
 
     def correct(
-        self, state: TueState, measurements: Sequence[Measured], inputs: Sequence[Applied] = ()
+        self, state: TueState, measurements: Sequence[Measured], inputs: Sequence[InForce] = ()
     ) -> TueState:
         """By each measurement that is newer than all before; it has no past to put right."""
         for s, z in by_sampling(measurements, state.tick):

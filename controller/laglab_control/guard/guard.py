@@ -11,9 +11,9 @@ import numpy as np
 
 from laglab_control.estimators.delayed_ekf import DelayedEkf, DelayedState
 from laglab_control.estimators.interface import (
-    Applied,
     Calibration,
     Estimator,
+    InForce,
     Measured,
     State,
     by_sampling,
@@ -147,7 +147,7 @@ class Guard(Estimator[Watched]):
         self,
         state: Watched,
         measurements: Sequence[Measured],
-        inputs: Sequence[Applied] = (),
+        inputs: Sequence[InForce] = (),
         settled: int | None = None,
     ) -> Watched:
         """Measurement by measurement, in the order of sampling.
@@ -200,7 +200,7 @@ class Guard(Estimator[Watched]):
             return self.learner
         return self.estimator if state.aside is None else self._locator
 
-    def _put_right(self, state: Watched, inputs: Sequence[Applied]) -> Watched:
+    def _put_right(self, state: Watched, inputs: Sequence[InForce]) -> Watched:
         """With the inputs that were others than believed."""
         items, length = state.inputs
         tick = state.tick
@@ -214,7 +214,7 @@ class Guard(Estimator[Watched]):
         items, length = state.inputs
         first = state.tick - length
         inputs = [known.get(j, u) for j, u in enumerate(items[:length], start=first)]
-        since = [Applied(j - state.origin, u) for j, u in known.items() if j >= state.origin]
+        since = [InForce(j - state.origin, u) for j, u in known.items() if j >= state.origin]
         inner = self._active(state).correct(state.state, (), since)
         return state._replace(state=inner, inputs=logged(*inputs))
 

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab_control import (
-    Applied,
     Control,
     Controller,
     Echo,
+    InForce,
     Measured,
     StationConfig,
     normalised_squared,
@@ -78,7 +78,7 @@ class Overhearing(Controller):
         control: Control,
         measurements: Sequence[Measured],
         echoes: Sequence[Echo] = (),
-        recalled: Sequence[Applied] = (),
+        recalled: Sequence[InForce] = (),
     ) -> Control:
         """The station's own; the others follow it up to here."""
         news = bool(measurements)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from laglab_control.batch.impaired.doubt import Doubts
 from laglab_control.batch.impaired.estimators import DelayedEkf, Ekf, Estimator, Raw
-from laglab_control.batch.impaired.guard import Watch
+from laglab_control.batch.impaired.guard import Suspicion
 from laglab_control.batch.impaired.paper import Popf
 from laglab_control.batch.impaired.record import Record
 from laglab_control.batch.impaired.sent import Sent
@@ -69,7 +69,7 @@ class ImpairedController:
         self._record = Record(timetable, self._sent)
         prior = prior_of(config, self._began)
         self._estimator = IMPAIRED[config.estimator](robots, self._record, prior)
-        self._watch = Watch(count) if config.guard else None
+        self._suspicion = Suspicion(count) if config.guard else None
         self._doubts = Doubts(timetable, self._sent, config.model.sample_time)
         self._lost = np.zeros(count, np.bool_)
         self._last = stand_still(count)
@@ -78,7 +78,7 @@ class ImpairedController:
     @property
     def acts(self) -> NDArray[np.bool_]:
         """The robots whose guard would have acted by now."""
-        return np.zeros_like(self._lost) if self._watch is None else self._watch.acts
+        return np.zeros_like(self._lost) if self._suspicion is None else self._suspicion.acts
 
     def answer(self, z: Pose) -> Answers:
         """The next tick, at which z is sampled; it arrives when it does."""
@@ -87,11 +87,11 @@ class ImpairedController:
         if tick:
             self._record.believe(tick)
         weighed = self._estimator.go_on(tick, self._record.put_right(tick))
-        if self._watch is not None:
-            self._watch.look(weighed)
+        if self._suspicion is not None:
+            self._suspicion.look(weighed)
         pose, P = self._estimator.estimate(tick)
         if P is not None:
-            P = P if self._watch is None else self._watch.claimed(P)
+            P = P if self._suspicion is None else self._suspicion.claimed(P)
             P = self._doubts.added(P, pose, tick)
         there = ~np.isnan(pose.theta) if P is None else np.True_
         self._lost = self._lost | there & diverged(pose, self._config.goal, self._began)

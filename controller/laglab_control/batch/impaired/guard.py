@@ -36,7 +36,7 @@ BOUNDS = np.array(
 """What the NIS of so many innovations add up to at most."""
 
 
-class Watch:
+class Suspicion:
     """The evidence of all robots so far."""
 
     def __init__(self, robots: int) -> None:

@@ -14,7 +14,13 @@ from laglab.progress import tracked
 from laglab.results.figures import picture_place, save
 from laglab.scenario import Scenario
 from laglab.scenario.tables.estimator import COMPARABLE, comparable
-from laglab.studies.consistency import consistency_table, draw_consistency, nth, samples, verdicts
+from laglab.studies.consistency import (
+    consistencies,
+    consistency_table,
+    draw_consistency,
+    nth,
+    samples,
+)
 from laglab.tables import terminal
 
 JUDGED = ("ekf", "popf", "popf-exact", "delayed-ekf")
@@ -45,7 +51,7 @@ def consistency(
     _check(scenario, seeds)
     runs = samples(scenario, names, seeds, workers)
     shown = tracked(runs, seeds, "consistency", "seed")
-    got = verdicts(names, shown, scenario.must_end(), scenario.link.m)
+    got = consistencies(names, shown, scenario.must_end(), scenario.link.m)
     terminal().print(consistency_table(scenario, got, seeds))
     save(draw_consistency(scenario, got, width), out)
     print(f"picture in {out}")

@@ -3,10 +3,10 @@
 from laglab.runs.plant.foreign import start_values, wired
 from laglab.runs.plant.shipped import robot_parameters
 from laglab.scenario import Scenario
-from laglab_fmu import OtherParameters, Parameters
+from laglab_fmu import OtherParameters, ShippedParameters
 
 
-def fleet_parameters(scenario: Scenario) -> Parameters:
+def fleet_parameters(scenario: Scenario) -> ShippedParameters:
     """Of the robot that moves as the scenario's does when it is alone."""
     plant = scenario.plant
     if not plant.is_mapped:

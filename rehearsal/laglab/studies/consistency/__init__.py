@@ -2,18 +2,18 @@
 
 from laglab.studies.consistency.judging import Job, Sample, judge, judged, nth, samples
 from laglab.studies.consistency.report import consistency_table, draw_consistency
-from laglab.studies.consistency.tally import Tally, chi_square_bounds, verdicts
+from laglab.studies.consistency.tally import Tally, chi_square_bounds, consistencies
 
 __all__ = [
     "Job",
     "Sample",
     "Tally",
     "chi_square_bounds",
+    "consistencies",
     "consistency_table",
     "draw_consistency",
     "judge",
     "judged",
     "nth",
     "samples",
-    "verdicts",
 ]

@@ -1,4 +1,4 @@
-"""The verdicts on the filters' covariances, as a table and as a picture."""
+"""How consistent the filters are, as a table and as a picture."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from laglab.results.figures.panels import marked
 from laglab.results.figures.style import BLUE, GREY, PALE, short
 from laglab.results.numbers import mean_of_known
 from laglab.scenario import Scenario
-from laglab.studies.consistency.tally import CONFIDENCE, DEGREES, Average, Verdict
+from laglab.studies.consistency.tally import CONFIDENCE, DEGREES, Average, Consistency
 from laglab.tables import plain_table
 
 if TYPE_CHECKING:
@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 AXES = ("x", "y", "θ")
 
 
-def consistency_table(scenario: Scenario, verdicts: Sequence[Verdict], seeds: int) -> Table:
+def consistency_table(scenario: Scenario, filters: Sequence[Consistency], seeds: int) -> Table:
     """One line a filter."""
-    low, high = verdicts[0].bounds
+    low, high = filters[0].bounds
     table = plain_table(
         title=f"{scenario.name}: P_0 = {scenario.estimator.initial_covariance:g} I, n = "
         f"{scenario.link.n}, m = {scenario.link.m}, {seeds} seeds",
@@ -39,50 +39,50 @@ def consistency_table(scenario: Scenario, verdicts: Sequence[Verdict], seeds: in
     headings = ("filter", "NEES", "%", "NIS", "%", "ahead", "worst", *AXES, "P<0", "lost", "")
     for heading in headings:
         table.add_column(heading, justify="left" if heading == "filter" else "right")
-    for verdict in verdicts:
-        table.add_row(verdict.estimator, *_cells(verdict))
+    for one in filters:
+        table.add_row(one.estimator, *_cells(one))
     return table
 
 
-def _cells(verdict: Verdict) -> list[str]:
-    claimed, true = (np.sqrt(mean_of_known(v**2)) for v in (verdict.claimed, verdict.true))
+def _cells(one: Consistency) -> list[str]:
+    claimed, true = (np.sqrt(mean_of_known(v**2)) for v in (one.claimed, one.true))
     return [
-        f"{verdict.nees.mean:.2f}",
-        f"{verdict.nees.inside:.0%}",
-        f"{verdict.nis.mean:.2f}",
-        f"{verdict.nis.inside:.0%}",
-        f"{verdict.nees_ahead.mean:.2f}",
-        f"{np.nanmax(verdict.of_runs, initial=0):.3g}",
+        f"{one.nees.mean:.2f}",
+        f"{one.nees.inside:.0%}",
+        f"{one.nis.mean:.2f}",
+        f"{one.nis.inside:.0%}",
+        f"{one.nees_ahead.mean:.2f}",
+        f"{np.nanmax(one.of_runs, initial=0):.3g}",
         *(f"{ratio:.2f}" for ratio in claimed / true),
-        f"{verdict.indefinite:.0%}",
-        str(verdict.diverged),
-        "ok" if verdict.consistent else "no",
+        f"{one.indefinite:.0%}",
+        str(one.diverged),
+        "ok" if one.consistent else "no",
     ]
 
 
 def draw_consistency(
-    scenario: Scenario, verdicts: Sequence[Verdict], width: Width = "two"
+    scenario: Scenario, filters: Sequence[Consistency], width: Width = "two"
 ) -> Figure:
     """Average NEES, NIS and NEES of the prediction against their bounds, a panel a filter; and by
     how much each filter claims more, or less, than is true."""
     m = scenario.link.m
-    ticks = np.arange(len(verdicts[0].nees.values)) + m
+    ticks = np.arange(len(filters[0].nees.values)) + m
     time = np.asarray(ticks * scenario.sample_time, dtype=np.float64)
     with printed():
-        figure = sheet(INCHES[width], 0.9 * len(verdicts) + 1.8)
+        figure = sheet(INCHES[width], 0.9 * len(filters) + 1.8)
         above, below = figure.subfigures(
-            2, 1, squeeze=False, height_ratios=(len(verdicts), 1.3)
+            2, 1, squeeze=False, height_ratios=(len(filters), 1.3)
         ).flat
-        panels = above.subplots(len(verdicts), 3, squeeze=False, sharex=True, sharey="col")
-        for row, verdict in zip(panels, verdicts, strict=True):
-            for axes, average in zip(row, _averages(verdict).values(), strict=True):
-                _draw_average(axes, time, average, verdict.bounds)
-            row[0].set_ylabel(short(verdict.estimator))
-        for axes, name in zip(panels[0], _averages(verdicts[0]), strict=True):
+        panels = above.subplots(len(filters), 3, squeeze=False, sharex=True, sharey="col")
+        for row, one in zip(panels, filters, strict=True):
+            for axes, average in zip(row, _averages(one).values(), strict=True):
+                _draw_average(axes, time, average, one.bounds)
+            row[0].set_ylabel(short(one.estimator))
+        for axes, name in zip(panels[0], _averages(filters[0]), strict=True):
             axes.set_title(name)
             _few_numbers(axes)
         for i, (axes, name) in enumerate(zip(below.subplots(1, 3), AXES, strict=True)):
-            _draw_claims(axes, name, time, verdicts, i)
+            _draw_claims(axes, name, time, filters, i)
         legend(below.axes[0])
         figure.suptitle(
             f"{scenario.name}: is the claimed covariance the true one? Average of the seeds; grey: "
@@ -93,8 +93,8 @@ def draw_consistency(
     return figure
 
 
-def _averages(verdict: Verdict) -> dict[str, Average]:
-    return {"NEES": verdict.nees, "NIS": verdict.nis, "NEES of x̂(k+n)": verdict.nees_ahead}
+def _averages(one: Consistency) -> dict[str, Average]:
+    return {"NEES": one.nees, "NIS": one.nis, "NEES of x̂(k+n)": one.nees_ahead}
 
 
 def _draw_average(
@@ -109,15 +109,15 @@ def _draw_claims(
     axes: Axes,
     name: str,
     time: NDArray[np.float64],
-    verdicts: Sequence[Verdict],
+    filters: Sequence[Consistency],
     component: int,
 ) -> None:
     axes.axhline(1.0, color=GREY, linewidth=0.6, linestyle=":")
     axes.set_yscale("log")
-    for number, verdict in enumerate(verdicts):
+    for number, one in enumerate(filters):
         with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = verdict.claimed[:, component] / verdict.true[:, component]
-        marked(axes, time, ratio, line(number), number, verdict.estimator)
+            ratio = one.claimed[:, component] / one.true[:, component]
+        marked(axes, time, ratio, line(number), number, one.estimator)
     _few_numbers(axes)
     axes.set(xlabel="t [s]", ylabel=f"σ of {name}:\nclaimed / true")
 

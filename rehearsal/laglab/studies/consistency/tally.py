@@ -1,4 +1,4 @@
-"""The verdict on a filter, over seeds that are judged one after the other.
+"""How consistent a filter is, over seeds that are judged one after the other.
 
 What is kept of them does not grow with their number.
 """
@@ -43,7 +43,7 @@ class Average(NamedTuple):
         return float(mean_of_known(np.where(self.seeds == 0, np.nan, within)))
 
 
-class Verdict(NamedTuple):
+class Consistency(NamedTuple):
     """One filter over all seeds, ticks >= m."""
 
     estimator: str
@@ -134,9 +134,9 @@ class Tally:
         self._indefinite += int(np.isnan(nees[alive]).sum())
         self._diverged += len(alive) < self._ticks or not alive[-1]
 
-    def verdict(self) -> Verdict:
+    def consistency(self) -> Consistency:
         """On all of them."""
-        return Verdict(
+        return Consistency(
             self._estimator,
             nees=self._nees.average,
             nis=self._nis.average,
@@ -150,12 +150,12 @@ class Tally:
         )
 
 
-def verdicts(
+def consistencies(
     names: Sequence[str], seeds: Iterable[Mapping[str, Sample]], last_tick: int, m: int
-) -> list[Verdict]:
+) -> list[Consistency]:
     """On the filters of these names, of all seeds; `last_tick`: of a run where nothing diverges."""
     tallies = {name: Tally(name, last_tick, m) for name in names}
     for samples in seeds:
         for name, tally in tallies.items():
             tally.add(samples[name])
-    return [tally.verdict() for tally in tallies.values()]
+    return [tally.consistency() for tally in tallies.values()]

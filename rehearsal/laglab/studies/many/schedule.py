@@ -14,7 +14,7 @@ import numpy as np
 
 from laglab.runs.robot_side import link_fates
 from laglab.scenario import Scenario
-from laglab_control import MEMORY, Applied, Told, Vector
+from laglab_control import MEMORY, InForce, Told, Vector
 from laglab_control.batch.impaired import Arrivals, Course, Missing, News, Tokens
 from laglab_gateway import Channel, Safety
 from laglab_gateway.drive import Drive, follow, rejection, speeds, supervise
@@ -22,11 +22,11 @@ from laglab_gateway.memory import Owed, SpeedMemory
 from laglab_protocol import (
     ROBOT,
     UNANNOUNCED,
+    Applied,
     Command,
     Measurement,
     Recall,
 )
-from laglab_protocol import Applied as Recalled
 from laglab_station import Questions, echoes, recalled
 
 Token = tuple[float, float]
@@ -81,7 +81,7 @@ class _Robot:
         self._commands: Channel[Command | Recall] = Channel(
             "command", n, Ts, fates.get("command"), _no_bytes
         )
-        self._measurements: Channel[Measurement | Recalled] = Channel(
+        self._measurements: Channel[Measurement | Applied] = Channel(
             "measurement", m, Ts, fates.get("measurement"), _no_bytes
         )
         self._sample_time = Ts
@@ -92,7 +92,7 @@ class _Robot:
         self.in_force = STANDING
         self.most_at_once = 0
 
-    def open_tick(self, tick: int) -> list[Measurement | Recalled]:
+    def open_tick(self, tick: int) -> list[Measurement | Applied]:
         """What comes across with this tick."""
         sample = Measurement(0.0, 0.0, 0.0, *self.in_force, tick, self._drive.command_tick)
         self._measurements.push(tick, sample)
@@ -135,11 +135,11 @@ class _Station:
         """Though it had been sent to drive."""
 
     def answer(
-        self, tick: int, came: list[Measurement | Recalled], record: "_Record"
+        self, tick: int, came: list[Measurement | Applied], record: "_Record"
     ) -> list[Recall]:
         """What it asks at this tick; all that it knows by then goes on record."""
         measurements = [each for each in came if isinstance(each, Measurement)]
-        answers = [each for each in came if isinstance(each, Recalled)]
+        answers = [each for each in came if isinstance(each, Applied)]
         if tick:
             self._believed.append(self._sent(tick - 1))
         if came:
@@ -156,7 +156,7 @@ class _Station:
         made = tick - self._delay
         return (float(made), 1.0) if made >= 0 else STANDING
 
-    def _put_right(self, tick: int, inputs: list[Applied], record: "_Record") -> None:
+    def _put_right(self, tick: int, inputs: list[InForce], record: "_Record") -> None:
         known = {each.tick: _token(each) for each in inputs if each.tick >= 0}
         delay = self._told.usual_delay(otherwise=self._delay)
         if delay != self._delay:
@@ -176,7 +176,7 @@ class _Station:
                 self._newest = max(self._newest, s)
 
 
-def _token(applied: Applied) -> Token:
+def _token(applied: InForce) -> Token:
     command, share = applied.u.tolist()
     return command, share
 

@@ -9,7 +9,7 @@ import numpy as np
 from laglab.interface import run
 from laglab.results.numbers import loop_estimates, measurements, shadow_estimates
 from laglab.scenario import load
-from laglab.studies.consistency import Job, chi_square_bounds, judge, nth, verdicts
+from laglab.studies.consistency import Job, chi_square_bounds, consistencies, judge, nth
 from laglab.studies.errata import VARIANTS, Variant, cost
 from laglab.studies.reproduce.claim import Claim, Evidence, Verdict, never
 from laglab_control import Erratum, Popf, RobotModel, constant_delay, replay
@@ -66,7 +66,7 @@ def claimed_covariance() -> Evidence:
     names = ("popf", "popf-exact")
     jobs = [Job(nth(scenario, number).to_toml(), names) for number in range(SEEDS)]
     m = scenario.link.measurement_delay
-    popf, exact = verdicts(names, map(judge, jobs), scenario.must_end(), m)
+    popf, exact = consistencies(names, map(judge, jobs), scenario.must_end(), m)
     high = chi_square_bounds(SEEDS)[1]
     return Evidence(
         {
