@@ -31,6 +31,8 @@ WRONG = {
     "[start]\nradius = -3.0": "start.radius: must be above 0",
     "[start]\nradius = 2000.0": "start.radius: must be 1000 or less",
     "sedes = 3": "sedes: unknown key; known here: scenario, description, seeds, grid, start",
+    'also = ["alarms"]': "also: 'alarms' is none of alarm_s, alarm_error",
+    "also = [3]": "also",
     "[[": "not a readable TOML file",
 }
 ALONE = {

@@ -1,5 +1,7 @@
 """How far each station can be trusted."""
 
+from pathlib import Path
+
 import numpy as np
 import pyarrow as pa
 import pytest
@@ -9,6 +11,7 @@ from laglab.studies.judged import ALARMS, judged_run
 from laglab.studies.sweep.cells.cell import Cell
 from laglab.studies.sweep.cells.compute import computed
 from laglab.studies.sweep.cells.ways import how
+from laglab.studies.sweep.loading import study_of, to_toml
 from laglab.studies.trust import CONDITIONS, score, stations, studies
 
 
@@ -90,12 +93,29 @@ def test_the_error_after_the_first_alarm_is_looked_at_two_seconds_later():
     assert np.isnan(short.alarm_error).all()
 
 
-def test_an_alarm_is_told_where_it_is_asked_for():
-    cell = only_cell("lab-real", "popf, guarded")
-    (told,) = computed([cell])
-    (quiet,) = computed([Cell(cell.base, cell.grid, cell.seeds, cell.radius, cell.origin)])
-    assert [name for name in told.column_names if name not in quiet.column_names] == list(ALARMS)
-    assert told["alarm_s"].null_count == 0
+STUDY = """
+scenario = "lab-real"
+grid = { duration = [1.0, 3.5] }
+"""
+
+
+def test_an_alarm_is_told_where_it_is_asked_for(tmp_path: Path):
+    (tmp_path / "quiet.toml").write_text(STUDY)
+    (tmp_path / "told.toml").write_text(f"also = {list(reversed(ALARMS))}{STUDY}")
+    quiet, told = (laglab.load_study(str(tmp_path / f"{name}.toml")) for name in ("quiet", "told"))
+    assert read_back(told, tmp_path) == [cell.key for cell in told.cells()]
+    assert not {cell.key for cell in quiet.cells()} & {cell.key for cell in told.cells()}
+    short, long = computed(list(told.cells()))
+    known = computed([next(quiet.cells())])[0].column_names
+    assert [name for name in long.column_names if name not in known] == list(ALARMS)
+    assert short["alarm_s"].to_pylist() == long["alarm_s"].to_pylist() != [None]
+    assert short["alarm_error"].to_pylist() == [None] != long["alarm_error"].to_pylist()
+
+
+def read_back(study: laglab.Study, folder: Path) -> list[str]:
+    """The keys of the cells of what is written down of it."""
+    again, origin = study_of(to_toml(study, study.origin), "told", folder / "told.toml")
+    return [cell.key for cell in again.cells(origin)]
 
 
 @pytest.mark.parametrize("options", [("--only", "nonsense"), ("--estimator", "nonsense")])

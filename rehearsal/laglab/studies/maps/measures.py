@@ -40,6 +40,8 @@ KNOWN = (
     Measure("nees", f"NEES (3 where P is true)\n{OF_RUNS}"),
     Measure("final_rho", f"distance at the end [m]\n{OF_RUNS}"),
     Measure("final_theta_error", f"heading error at the end [rad]\n{OF_RUNS}"),
+    Measure("alarm_s", "first alarm of the guard [s]\nmedian of those with one"),
+    Measure("alarm_error", "error 2 s after the first alarm [mm]\nmedian", factor=1e3),
     Measure("max_v", f"largest speed [m/s]\n{OF_RUNS}"),
     Measure("max_omega", f"largest turn rate [rad/s]\n{OF_RUNS}"),
 )

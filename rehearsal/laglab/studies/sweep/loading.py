@@ -41,6 +41,7 @@ class _File(Table):
     seeds: Seeds = 1
     grid: dict[str, object] = Field(default_factory=dict)
     start: _Start | None = None
+    also: list[str] = Field(default_factory=list)
     origin: str = ""
 
     @model_validator(mode="before")
@@ -98,6 +99,7 @@ def _made(file: _File, path: Path, overrides: Overrides, seeds: int | None) -> S
         radius=file.start.radius if file.start else None,
         name=path.stem,
         description=file.description,
+        also=tuple(file.also),
     )
 
 

@@ -14,6 +14,7 @@ from laglab.scenario import Scenario, changed
 from laglab.scenario.explain import spelled
 from laglab.scenario.model import FILES
 from laglab.scenario.overrides import of_python
+from laglab.studies.judged import ALARMS
 from laglab.studies.sweep.cells.cell import Cell
 from laglab.version import code_version
 from laglab_control import FAR
@@ -42,7 +43,7 @@ class Study:
     name: str = "study"
     description: str = ""
     also: tuple[str, ...] = ()
-    """Columns that other studies' rows do not have: some of `laglab.studies.judged.ALARMS`."""
+    """Columns besides those that every study has: some of alarm_s, alarm_error."""
 
     def __post_init__(self) -> None:
         if not isinstance(self.scenario, Scenario):
@@ -61,6 +62,9 @@ class Study:
             raise StudyError("seeds: must have each seed once")
         if not self.seeds:
             raise StudyError("seeds: must have a seed at least")
+        if unknown := [name for name in self.also if name not in ALARMS]:
+            raise StudyError(f"also: {unknown[0]!r} is none of {', '.join(ALARMS)}")
+        object.__setattr__(self, "also", tuple(name for name in ALARMS if name in self.also))
 
     @property
     def points(self) -> int:
@@ -122,6 +126,7 @@ class Study:
             "description": self.description,
             "seeds": self._told_seeds,
             **start,
+            **({"also": list(self.also)} if self.also else {}),
             "grid": {key: list(values) for key, values in self.grid.items()},
             "scenario": self.scenario.fields(),
         }
