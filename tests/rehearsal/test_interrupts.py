@@ -166,7 +166,7 @@ def test_the_two_sides_of_a_run_without_end_meet_too(
     station = start("controller", *options, *link)
     wait_for_rows(tmp_path / "run" / "trace.csv")
     gateway.send_signal(signal.SIGINT)
-    assert gateway.wait(10) == station.wait(10) == 130
+    assert gateway.wait(30) == station.wait(10) == 130
 
 
 def test_an_interrupt_that_meets_a_string_is_no_other(tmp_path: Path) -> None:

@@ -137,7 +137,7 @@ def test_a_controller_that_stops_reading_is_noticed(
     station = start("controller", *options, "--endpoint", f"serial://robot:{BAUD}")
     wait_until(lambda: rows(tmp_path / "run" / "trace.csv") > 50)
     station.send_signal(signal.SIGSTOP)
-    errors = ended(gateway, 10)
+    errors = ended(gateway, 30)
     assert gateway.returncode == 4
     (said,) = (line for line in errors.splitlines() if line.startswith("laglab:"))
     assert "has been silent since tick" in said

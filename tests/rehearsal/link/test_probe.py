@@ -195,7 +195,8 @@ def test_on_a_serial_line_delays_are_its_arithmetic(
     for _, flow in measured.flows:
         assert flow.lost.sum() <= 1  # a busy machine pauses within a frame, which ends it
         at_the_rate = flow.size * 10 / baud
-        assert at_the_rate * 0.95 < np.median(flow.delay) < at_the_rate + 0.01
+        undisturbed = np.quantile(flow.delay, 0.2)
+        assert at_the_rate * 0.95 < undisturbed < at_the_rate + 0.01
     line.send_signal(signal.SIGINT)
     report, _ = line.communicate(timeout=10)
     assert "lost because nobody read them" not in report
