@@ -34,6 +34,10 @@ class Waits(NamedTuple):
     refuse: float = 0.4
 
 
+HELD_UP = 5.0
+"""[s] We are not held up for longer: a peer that never stops is listened to no longer."""
+
+
 class NoReactionError(Exception):
     """The peer did not do what it must; the text says what."""
 
@@ -125,14 +129,16 @@ class Session(ABC):
         return message if isinstance(message, kind) else None
 
     def listen(self, seconds: float, until: Callable[[Frame], bool]) -> Frame | None:
-        """The first frame for which `until` holds, None when none came in time."""
+        """The first frame for which `until` holds, None when none came in time: what is there by
+        the time that we look at the clock came in time, for it may be we who were held up."""
         deadline = time.monotonic() + seconds
-        while (left := deadline - time.monotonic()) > 0:
-            batch = self._receive(left)
-            for frame in batch:
+        while True:
+            left = deadline - time.monotonic()
+            for frame in self._receive(max(left, 0.0)):
                 if until(frame):
                     return frame
-        return None
+            if left <= 0 and not (self._listener.taken and left > -HELD_UP):
+                return None
 
     def _receive(self, seconds: float) -> list[Frame]:
         frames = self._listener.listen(seconds)

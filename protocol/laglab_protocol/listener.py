@@ -7,8 +7,9 @@ from laglab_protocol.endpoints import Link
 from laglab_protocol.framing.frame import Frame, Refusal
 from laglab_protocol.framing.receiver import Receiver
 
-STREAM_SILENCE = 0.05
-"""[s] Bytes that follow each other on a serial line, however slow, come sooner than this."""
+STREAM_SILENCE = 0.08
+"""[s] Bytes that follow each other on a serial line, however slow, come sooner than this, and who
+is not answered sends again later than this."""
 
 
 class Listener:

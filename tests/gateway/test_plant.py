@@ -20,6 +20,7 @@ from laglab_gateway import (
     Outcome,
     Patience,
     PlantSilentError,
+    Recorder,
     Relay,
     Safety,
     Services,
@@ -239,6 +240,37 @@ def test_ctrl_c_reaches_both_sides(
     assert "interrupted at tick" in ended(gateway, 130)
     ended(station, 130)
     assert robot.result(timeout=5).reason is EndReason.INTERRUPTED
+
+
+class HeldUp(Recorder):
+    """A disk that takes its time, once."""
+
+    flushed = 0
+
+    def flush(self) -> None:
+        self.flushed += 1
+        if self.flushed == 30:
+            time.sleep(1.3)
+
+
+def test_who_is_held_up_does_not_take_the_robot_for_silent(
+    gateway_as_robot: tuple[str, "Future[Outcome]"],
+) -> None:
+    """It has gone on meanwhile, and what it said is there to be read."""
+    address, robot = gateway_as_robot
+    services = Services(standard_parameters(1, 1, Safety()), placeable=False)
+    relay, recorder = Relay(GatewayConfig(1, 1, 200, 0.01), services), HeldUp()
+    with (
+        open_endpoint(address) as line,
+        open_endpoint("udpin://127.0.0.1:0") as endpoint,
+        open_endpoint(endpoint.name.replace("udpin", "udpout")) as station,
+    ):
+        station.send(Sender(STATION_SYSTEM, STATION_COMPONENT).frame(STATION_HEARTBEAT))
+        around = Surroundings(Listener(endpoint, Receiver()), recorder, Patience(silence=3.6))
+        served = serve_remote(relay, Listener(line, Receiver()), around)
+    assert recorder.flushed > 100
+    assert served.outcome.reason is EndReason.COMPLETED
+    assert robot.result(timeout=5).reason is EndReason.COMPLETED
 
 
 def test_a_robot_that_never_speaks_is_named(tmp_path: Path) -> None:

@@ -157,6 +157,34 @@ def test_a_run_without_end_lasts_until_ctrl_c_and_its_results_are_written(
     assert load(str(tmp_path / "run" / "scenario.toml")).last_tick is None
 
 
+SLOW_LAW = """
+from pathlib import Path
+from time import sleep
+
+class Law:
+    def __init__(self, goal): pass
+    def drive(self, pose, time, memory):
+        if time > 0.5:
+            Path("busy").touch()
+            sleep(1.5)
+        return 0.1, 0.0, memory
+"""
+
+
+def test_a_side_that_is_busy_has_time_for_its_last_words(start: Start, tmp_path: Path) -> None:
+    (tmp_path / "slow.py").write_text(SLOW_LAW)
+    run = start("run", *LONG, "--law", "slow:Law", "--out", "run")
+    while not (tmp_path / "busy").exists():
+        assert run.poll() is None
+        time.sleep(0.01)
+    run.send_signal(signal.SIGINT)
+    _, errors = run.communicate(timeout=30)
+    assert run.returncode == 130, errors
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text())
+    assert summary["verdict"].startswith("interrupted at tick")
+    assert summary["station"] is not None
+
+
 def test_the_two_sides_of_a_run_without_end_meet_too(
     start: Start, listening_port: Callable[["subprocess.Popen[str]"], str], tmp_path: Path
 ) -> None:

@@ -33,7 +33,9 @@ TIMESYNC_TICKS = 10
 """Ticks between two questions for the station's clock."""
 
 END_TRIES = 5
-"""A lost END only costs the station its silence timeout, so a few tries are enough."""
+"""A lost END only costs the station its silence timeout, so a few tries are enough ..."""
+END_TRIES_OF_A_STREAM = 20
+"""... but a port that closes takes with it what its far end has not read yet."""
 
 KNOCK_PERIOD = 0.5
 """[s] Between heartbeats to a station that has not been heard."""
@@ -225,9 +227,14 @@ class Conversation:
 
     def check_silence(self) -> None:
         """Raises StationSilentError when the station has been silent for longer than allowed."""
-        silence = self.now() - self._heard
-        if silence > self._patience.silence:
-            raise StationSilentError(self._heard_tick, silence)
+        if self._seems_silent:
+            self.listen(0.0)  # it may be we who were held up
+        if self._seems_silent:
+            raise StationSilentError(self._heard_tick, self.now() - self._heard)
+
+    @property
+    def _seems_silent(self) -> bool:
+        return self.now() - self._heard > self._patience.silence
 
     def finish_tick(self) -> None:
         """Close the tick; it is recorded when there is time."""
@@ -256,8 +263,9 @@ class Conversation:
         outcome = self._gateway.stop(EndReason.FAILED)
         self._write_down()
         self._recorder.flush()
+        most = END_TRIES if self._link.datagrams else END_TRIES_OF_A_STREAM
         tries, latest = 0, self.now() + self._patience.silence
-        while tries < END_TRIES and self.now() < latest:
+        while tries < most and self.now() < latest:
             heard = self._heard
             self.send(self._gateway.farewell(outcome.reason))
             if not self._gateway.connected:

@@ -79,12 +79,16 @@ class RobotLine:
             self._link.accept_peer()
         return frames
 
+    @property
+    def seems_silent(self) -> bool:
+        """Whether the last tick that was read was longer ago than allowed."""
+        return monotonic() - self._heard > self._patience.robot_silence
+
     def check_silence(self) -> None:
         """Raises PlantSilentError when the last tick was longer ago than allowed."""
-        silence = monotonic() - self._heard
-        if silence > self._patience.robot_silence:
+        if self.seems_silent:
             since = self._relay.tick if self._relay.under_way else None
-            raise PlantSilentError(self._link.name, since, silence)
+            raise PlantSilentError(self._link.name, since, monotonic() - self._heard)
 
     def refusals(self) -> Iterator[str]:
         """Now and then: why frames of the robot are not taken, and how to mend that."""
@@ -154,6 +158,8 @@ def serve_remote(relay: Relay, robot: Listener, around: Surroundings) -> Served:
             line.forward()
             for said in line.refusals():
                 around.warn(said)
+            if line.seems_silent:  # it may be we who were held up
+                _relay_ticks(relay, line, conversation, around)
             line.check_silence()
     return served(relay)
 

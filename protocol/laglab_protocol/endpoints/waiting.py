@@ -20,21 +20,28 @@ def first_bytes(
 ) -> bytes:
     """What `read` gives within `timeout` seconds, asked once at least; it gives None for not yet.
 
+    Nothing means that nothing came until then, however late it is when that is found out.
     `descriptor()` is readable when it would give more; asked for before each wait.
     """
     now = monotonic()
     deadline = now + timeout
-    data = _poll(read, min(now + POLLED, deadline))
-    while data is None and (left := deadline - monotonic()) > 0:
+    until = min(now + POLLED, deadline)
+    data = _poll(read, until)
+    while data is None and until < deadline:
+        left = deadline - monotonic()
         select.select([descriptor()], [], [], min(max(left - POLLED, 0.0), LONGEST))
-        data = _poll(read, min(monotonic() + POLLED, deadline))
+        until = min(monotonic() + POLLED, deadline)
+        data = _poll(read, until)
     return data or b""
 
 
 def _poll(read: Callable[[], bytes | None], until: float) -> bytes | None:
-    while (data := read()) is None and monotonic() < until:
+    """Asked for the last time when it is that late, or later: after the clock, not before."""
+    while True:
+        last = monotonic() >= until
+        if (data := read()) is not None or last:
+            return data
         _yield()  # the far end may be waiting for this very processor
-    return data
 
 
 def writable(descriptor: int, timeout: float) -> bool:

@@ -52,6 +52,9 @@ from laglab_protocol import (
     refuse_open_door,
 )
 
+PATIENT = 0.5
+"""[s] Nobody sends a probe again: the rest of one is waited for longer than in a loop."""
+
 app = group("The link you have: measured, imported, fitted.")
 
 UrlArgument = Annotated[
@@ -91,7 +94,7 @@ def echo(
     with Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, key) as codec, open_endpoint(url) as link:
         refuse_open_door(link, key, unsigned, harm="have frames sent to others")
         say(f"at {link.name}: waiting for `laglab link probe`; Ctrl-C ends it")
-        answer(Listener(link, codec.receiver), codec, say)
+        answer(Listener(link, codec.receiver, silence=PATIENT), codec, say)
 
 
 @app.command("probe")
@@ -128,7 +131,11 @@ def probe(
         counting("frame", link.name, count) as told,
     ):
         measured = measure(
-            Listener(link, codec.receiver), codec, plan, lambda prober: told(prober.sent), say
+            Listener(link, codec.receiver, silence=PATIENT),
+            codec,
+            plan,
+            lambda prober: told(prober.sent),
+            say,
         )
     write_link_log(measured, out)
     print_measured(measured, terminal())

@@ -41,8 +41,8 @@ Transport = Literal["inline", "udp", "serial"]
 
 NOTICE_SECONDS = 1.0
 """[s] What a gateway needs, besides the silence timeout, to say that its station is silent."""
-GOODBYE_SECONDS = 0.5
-"""[s] What a station needs for its last words when a gateway has ended in order."""
+GOODBYE_SECONDS = 5.0
+"""[s] What a side needs for its last words when the other has ended in order, on a busy machine."""
 
 
 def unheard(_: object, __: object) -> None:
@@ -176,9 +176,10 @@ class _Rehearsal:
                     self._take_of_gateway(report)
         return None
 
-    def _next_letter(self) -> Letter | None:
+    def _next_letter(self, patience: float = LOOK_UP) -> Letter | None:
+        """None when none came within so many seconds; at once, with 0, when none is there."""
         with suppress(Empty):
-            return self._inbox.get(timeout=LOOK_UP)
+            return self._inbox.get(block=patience > 0, timeout=patience)
         return None
 
     def _read_on(self, patience: float) -> None:
@@ -187,9 +188,10 @@ class _Rehearsal:
         while not (self._over and self._station_over):
             if deadline is None and (self._over or self._station_over):
                 deadline = monotonic() + patience
-            if deadline is not None and monotonic() > deadline:
-                return
-            match self._next_letter():
+            late = deadline is not None and monotonic() > deadline
+            match self._next_letter(0.0 if late else LOOK_UP):
+                case None if late:
+                    return
                 case sender, report if sender is self._gateway:
                     self._take_of_gateway(report)
                 case _, report:

@@ -2,8 +2,7 @@
 
 import queue
 import shutil
-import time
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +21,10 @@ from laglab_protocol import (
 )
 from laglab_protocol.dialect.mavgen import carried_dialects, dialect_path
 
-READS_WITHIN = 0.02
+READS_WITHIN = 0.1
 """[s] To wait for it: it reads in its own thread, and does not say when it found nothing."""
+THE_REST_WITHIN = 0.005
+"""[s] What else was in the same datagram follows that soon."""
 CONNECTS_WITHIN = 5.0
 
 
@@ -63,11 +64,12 @@ class LibmavReceiver(Receiver):
         while self._link.receive(0.0):
             pass  # its own heartbeats
         self._link.send(data)
-        time.sleep(READS_WITHIN)
-        return self._taken()
-
-    def _taken(self) -> list[Frame]:
-        return [self._found.get() for _ in range(self._found.qsize())]
+        found: list[Frame] = []
+        with suppress(queue.Empty):
+            found.append(self._found.get(timeout=READS_WITHIN))
+            while True:
+                found.append(self._found.get(timeout=THE_REST_WITHIN))
+        return found
 
 
 def _dialect(stack: ExitStack) -> Path:

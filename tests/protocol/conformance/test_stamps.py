@@ -39,3 +39,15 @@ def test_a_frame_that_the_line_lost_is_not_the_robots_fault(
                     session.heard += frames_in(raw)
                     session.heard_at.append(at)
         assert (COUNTS.check(session) is not None) == wrong
+
+
+def test_what_came_while_we_were_held_up_came_in_time() -> None:
+    with open_endpoint("udpin://127.0.0.1:0") as endpoint:
+        session = FreeRunningSession(endpoint, Waits(), None)
+        with open_endpoint(endpoint.name.replace("udpin", "udpout")) as robot:
+            for k in range(3):
+                robot.send(Sender(1, 1).frame(Tick(k, 0)))
+            robot.receive(0.05)
+            found = session.listen(0.0, lambda frame: frame.message == Tick(2, 0))
+            assert found is not None
+            assert session.listen(0.0, lambda _: True) is None
