@@ -35,7 +35,7 @@ MESSAGES = st.one_of(
 
 
 @pytest.mark.parametrize("estimator", ESTIMATORS)
-@settings(max_examples=60, deadline=2000)
+@settings(max_examples=60)
 @given(said=st.lists(MESSAGES, max_size=40))
 def test_no_message_of_the_robot_harms_the_station(estimator: str, said: list[Message]) -> None:
     station, robot = Station(StationConfig(estimator=estimator), clock=lambda: 0), Sender(1, 1)

@@ -23,7 +23,7 @@ from laglab_protocol import (
 from laglab_station import Station, run_station
 
 START = (-3.0, -3.0, 0.5)
-TICK, ANSWER = 0.01, 0.035
+TICK, ANSWER = 0.025, 0.0875
 """[s] How often the robot speaks, and what an answer takes."""
 
 
@@ -155,7 +155,7 @@ def drive(url, ticks):
 
 
 def test_the_answers_of_a_slow_station_stay_fresh():
-    """A second of ticks, of which it can answer a quarter: none waits for those before it."""
+    """A hundred ticks, of which it can answer a quarter: none waits for those before it."""
     with open_endpoint("udpin://127.0.0.1:0") as endpoint:
         station = Station(StationConfig(estimator="raw"), Slow)
         thread = threading.Thread(

@@ -61,7 +61,7 @@ def robot() -> Iterator[Robot]:
         yield opened
 
 
-@settings(max_examples=100, deadline=2000)
+@settings(max_examples=100)
 @given(said=st.lists(MESSAGES | COMMANDS | REQUESTS, max_size=30))
 def test_no_message_of_a_station_harms_the_robots_side(robot: Robot, said: list[Message]) -> None:
     robot.reset(PARAMETERS)
@@ -78,7 +78,7 @@ def test_no_message_of_a_station_harms_the_robots_side(robot: Robot, said: list[
             return
 
 
-@settings(max_examples=100, deadline=2000)
+@settings(max_examples=100)
 @given(said=st.lists(MESSAGES | COMMANDS | REQUESTS | TICKS, max_size=30))
 def test_no_message_of_either_side_harms_the_relay(said: list[Message]) -> None:
     relay = Relay(CONFIG, Services(standard_parameters(2, 3, CONFIG.safety), placeable=False))

@@ -26,7 +26,7 @@ from .traces import assert_whole, wait_for_rows
 
 Start = Callable[..., "subprocess.Popen[str]"]
 ListeningPort = Callable[["subprocess.Popen[str]"], str]
-NOTICED_WITHIN = 5.0
+NOTICED_WITHIN = 10.0
 
 
 def said_in_time(process: "subprocess.Popen[str]", words: str) -> str:

@@ -3,12 +3,23 @@
 import os
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
 OPTIONS = ("lab", "--duration", "0.5", "--endpoint")
+
+
+@contextmanager
+def ending(process: "subprocess.Popen[str]") -> Iterator["subprocess.Popen[str]"]:
+    """Whatever happens here, it does not go on."""
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
 
 
 class Machine:
@@ -69,7 +80,7 @@ def test_each_side_runs_where_only_what_it_needs_is_installed(
     assert "pip install 'laglab[see]'" in machine.refuses("report", "runs/lab")
 
     ours = [sys.executable, "-m", "laglab", "gateway", *OPTIONS, "udpin://127.0.0.1:0"]
-    with subprocess.Popen(ours, stderr=subprocess.PIPE, text=True) as gateway:
+    with ending(subprocess.Popen(ours, stderr=subprocess.PIPE, text=True)) as gateway:
         station = machine.start(
             "controller", *OPTIONS, f"udpout://127.0.0.1:{listening_port(gateway)}"
         )
@@ -79,7 +90,7 @@ def test_each_side_runs_where_only_what_it_needs_is_installed(
     machine.install(".[gateway]")
     assert machine.has("fmpy")
     assert not machine.has("matplotlib")
-    with machine.start("gateway", *OPTIONS, "udpin://127.0.0.1:0") as gateway:
+    with ending(machine.start("gateway", *OPTIONS, "udpin://127.0.0.1:0")) as gateway:
         station = machine.start(
             "controller", *OPTIONS, f"udpout://127.0.0.1:{listening_port(gateway)}"
         )

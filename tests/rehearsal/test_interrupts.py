@@ -10,6 +10,7 @@ import tempfile
 import time
 import uuid
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -85,7 +86,8 @@ def started(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Started]
     started = Started(COMMANDS[request.param], tmp_path)
     yield started
     for number in started.all_processes():
-        os.kill(number, signal.SIGKILL)
+        with suppress(ProcessLookupError):
+            os.kill(number, signal.SIGKILL)
     started.process.communicate()
 
 
@@ -122,13 +124,11 @@ def test_nothing_goes_on_when_we_are_killed(started: Started) -> None:
 
 
 @pytest.mark.parametrize("ignored", ["INT", "HUP"])
-def test_what_we_were_started_to_ignore_stays_ignored(ignored: str, tmp_path: Path) -> None:
+def test_what_we_were_started_to_ignore_stays_ignored(ignored: str, start_program: Start) -> None:
     """By `nohup`, or by a shell that starts us in the background."""
     script = f'trap "" {ignored}; exec "$@"'
     laglab = (sys.executable, "-m", "laglab", "gateway", "lab", "--endpoint", "udpin://127.0.0.1:0")
-    process = subprocess.Popen(
-        ["sh", "-c", script, "sh", *laglab], cwd=tmp_path, stderr=subprocess.PIPE, text=True
-    )
+    process = start_program("sh", "-c", script, "sh", *laglab)
     assert process.stderr is not None
     assert process.stderr.readline().startswith("listening")
     process.send_signal(signal.Signals[f"SIG{ignored}"])

@@ -100,5 +100,8 @@ def test_a_reader_that_goes_away_does_not_end_the_run(lines: int, tmp_path: Path
     for _ in range(lines):
         os.read(process.stdout.fileno(), 10)
     process.stdout.close()
-    assert process.wait(30) == 141
+    try:
+        assert process.wait(30) == 141
+    finally:
+        process.kill()
     assert_whole(tmp_path / "run", ticks=1000)

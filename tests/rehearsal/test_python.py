@@ -7,6 +7,7 @@ import subprocess
 import sys
 import textwrap
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import nbclient
@@ -142,14 +143,14 @@ def test_a_diverged_run_is_a_result() -> None:
 
 
 @pytest.mark.parametrize("transport", ["inline", "udp", "serial"])
-def test_ctrl_c_leaves_nothing_running(tmp_path: Path, transport: str) -> None:
+def test_ctrl_c_leaves_nothing_running(
+    tmp_path: Path, start_program: Callable[..., "subprocess.Popen[str]"], transport: str
+) -> None:
     script = textwrap.dedent(f"""
         import laglab
         laglab.run("lab", {{"duration": 3600.0}}, transport={transport!r}, out="run")
     """)
-    process = subprocess.Popen(
-        [sys.executable, "-c", script], cwd=tmp_path, stderr=subprocess.PIPE, text=True
-    )
+    process = start_program(sys.executable, "-c", script)
     trace = tmp_path / "run" / "trace.csv"
     deadline = time.monotonic() + 20
     while not trace.exists() or trace.stat().st_size < 5000:

@@ -39,7 +39,7 @@ CROWDED = replace(
 TAKEN_OVER = Turn(
     2,
     "fig6",
-    REAL_TIME,
+    {**REAL_TIME, "speed": 1.0},
     "serial",
     signed=True,
     blow=Blow("controller", "SIGKILL", after=0.2, again=True),

@@ -150,7 +150,8 @@ def test_a_flood_on_both_ports_changes_nothing(start: Start, tmp_path: Path, sig
     key = tmp_path / "key"
     if signed:
         start("protocol", "keygen", key).communicate(timeout=20)
-    run = Run(start, tmp_path, *REAL_TIME, *(("--key", str(key)) if signed else ()))
+    patient = ("--set", "safety.link_timeout=3")
+    run = Run(start, tmp_path, *REAL_TIME, *patient, *(("--key", str(key)) if signed else ()))
     memory, work = run.memory(), run.work()
     assert flood(FLOOD, 3000, run.ports) > 3000
     assert run.work() - work < FLOOD / 2, "before, all that there was"

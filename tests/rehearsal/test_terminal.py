@@ -58,7 +58,10 @@ def on_a_terminal(folder: Path, columns: int, *arguments: str, **environment: st
         pass  # so a terminal says that nobody writes to it any more
     finally:
         os.close(master)
-    assert process.wait(30) == 0, read
+    try:
+        assert process.wait(30) == 0, read
+    finally:
+        process.kill()
     raw = read.decode()
     return Shown(raw, re.split(r"[\r\n]+", CONTROL.sub("", raw)))
 

@@ -55,7 +55,7 @@ def answers(cable: Cable, tmp_path: Path) -> Iterator[Answers]:
 
 def test_two_hosts_find_each_other(answers: Answers) -> None:
     measured = answers()
-    assert len(measured) >= 25
+    assert len(measured) >= 13
     assert 0.0 < median(measured) < 0.02
 
 
@@ -64,5 +64,5 @@ def test_the_measured_delay_is_what_netem_was_told(cable: Cable, answers: Answer
     for end, delay in zip(cable, told, strict=True):
         emulate(end, "delay", f"{1e3 * delay:g}ms")
     measured = answers()
-    assert len(measured) >= 25
+    assert len(measured) >= 13
     assert sum(told) < median(measured) < sum(told) + 0.015

@@ -27,7 +27,7 @@ PARSERS: dict[str, MakeReceiver] = {
     "mavgen's C": CReceiver,
     "libmav": LibmavReceiver,
 }
-WAITS = Waits(appear=5.0, react=0.5, refuse=0.15)
+WAITS = Waits(appear=5.0, react=2.0, refuse=0.15)
 
 
 class Standing:

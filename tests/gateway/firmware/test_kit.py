@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from laglab_conformance import Mark, conform
+from laglab_conformance import Mark, Waits, conform
 from laglab_protocol import NO_PROBE, PROBE_FILLER, PROBE_LAGS, Message, Probe, Sender, make_key
 
 from .line import PERIOD, Line
@@ -26,7 +26,7 @@ def test_it_conforms_signed_on_a_line_at_the_pace_of_a_real_one(
     assert "are joined" in cable.stderr.readline()
     start(firmware, "--key", tmp_path / "key", ports[0])
     url, key = f"serial://{ports[1]}:115200", tmp_path / "key"
-    report = conform(url, "robot", key, pace="realtime")
+    report = conform(url, "robot", key, Waits(react=4.0, refuse=0.6), pace="realtime")
 
     assert report.conforms, report.table()
     tried = {each.name: each.mark for each in report.results if each.group == "signing"}
