@@ -26,6 +26,9 @@ HEARTBEAT_PERIOD = 0.1
 CALL_AGAIN = 0.5
 """[s] A robot that says nothing for so long may have begun again, and wait for a heartbeat."""
 
+TELLS_WITHIN = 1.0
+"""[s] Of its first tick a robot may still say what it was told: on a stream all comes in pieces."""
+
 IN_FORCE = 1.0
 """[s] Heard so lately, a robot keeps its station: nobody at another address takes its place."""
 
@@ -95,6 +98,8 @@ class _Loop:
         """[s] For the last answer, and what was done after it."""
         self._called = -HEARTBEAT_PERIOD
         self._compared = False
+        self._met: float | None = None
+        """When its first tick had come."""
         self._refusals = Refusals(self._heard)
 
     def say(self, frames: list[bytes]) -> None:
@@ -110,8 +115,7 @@ class _Loop:
             self._call_every(HEARTBEAT_PERIOD)
             self._answer(HEARTBEAT_PERIOD)
             self._tell_of_keys()
-        if not self._compared and self._station.tick is not None:
-            self._station.warn("settings", "the robot does not tell its settings")
+        self._met = monotonic()
 
     def answer_until_end(self) -> End:
         try:
@@ -119,6 +123,9 @@ class _Loop:
         except FarEndGoneError:
             if self._station.outcome is None:
                 raise
+        finally:
+            self._miss_settings(0.0)
+            self._pass_warnings_on()
         if self._station.outcome is None:
             raise RobotSilentError(
                 f"{self._link.name}: the robot has been silent for {self._silence_timeout:g} s, "
@@ -214,9 +221,20 @@ class _Loop:
             refuse_other_sample_time(robot, station)
             if said := differences(robot, station):
                 self._station.warn("settings", f"the two sides were told different things: {said}")
+        self._miss_settings(TELLS_WITHIN)
+        self._pass_warnings_on()
+
+    def _pass_warnings_on(self) -> None:
         for text in self._station.warnings[self._warned :]:
             self._warned += 1
             self._onlooker.warned(text)
+
+    def _miss_settings(self, patience: float) -> None:
+        """When the robot has not told them so long [s] after its first tick."""
+        if self._compared or self._station.tick is None or self._met is None:
+            return
+        if monotonic() - self._met >= patience:
+            self._station.warn("no settings", "the robot does not tell its settings")
 
     def _tell_of_keys(self) -> None:
         """Now and then: whose frames we may not take, and how to mend that."""

@@ -137,8 +137,9 @@ class Station:
             return ()
 
     def heartbeat(self) -> list[bytes]:
-        """The frames that make the station known to the robot, and what it was told."""
-        return self._framed([STATION_HEARTBEAT, self.settings])
+        """The frames that make the station known to the robot; first what it was told: where they
+        come in pieces, a run begins with the heartbeat."""
+        return self._framed([self.settings, STATION_HEARTBEAT])
 
     def hear(self, frames: Sequence[Frame]) -> list[bytes]:
         """The frames to send back for these, perhaps none. Raises PluginFailedError."""

@@ -91,8 +91,8 @@ class Relay(RobotSide):
         return RobotState(self.time_us, *(last.pose + last.speeds if last else (0.0,) * 5))
 
     def greeting(self) -> bytes:
-        """The frames that make the robot begin its ticks, and say what it should have been told."""
-        return self._to_robot.frame(STATION_HEARTBEAT) + self._to_robot.frame(self.told_robot)
+        """The frames that say what the robot should have been told, and make it begin its ticks."""
+        return self._to_robot.frame(self.told_robot) + self._to_robot.frame(STATION_HEARTBEAT)
 
     @property
     def told_robot(self) -> Settings:

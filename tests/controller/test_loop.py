@@ -102,7 +102,7 @@ def test_a_warning_is_passed_on_once(link):
     measured = [Measurement(0.0, 0.0, 0.0, 0.0, 0.0, 0, -1), Tick(5, 1)]
     drive(robot, Tick(0, 0), measured, Tick(6, 0), End(6, EndReason.COMPLETED))
     thread.join(5)
-    no_settings, gain = onlooker.warnings
+    gain, no_settings = onlooker.warnings
     assert no_settings == "the robot does not tell its settings"
     assert gain.startswith("tick 5: popf's gain is")
 

@@ -21,6 +21,7 @@ from laglab_protocol import (
     Measurement,
     Receiver,
     Sender,
+    Settings,
     Tick,
     frames_in,
 )
@@ -277,7 +278,10 @@ def test_the_robots_end_is_answered_once_with_the_same():
 
 
 def test_heartbeat_says_ground_station():
-    (frame,) = frames_in(make().heartbeat()[0])
+    settings, frame = frames_in(b"".join(make().heartbeat()))
+    assert isinstance(settings.message, Settings), (
+        "before a run begins, wherever it comes in pieces"
+    )
     assert isinstance(frame.message, Heartbeat)
     assert (frame.system, frame.component, frame.message.type) == (200, 190, 6)
 

@@ -225,3 +225,31 @@ def test_an_end_ends_no_gateway_that_waits_and_no_run_that_it_is_not_of(
         assert gateway.poll() is None
         past.send(sender.frame(End(0, EndReason.DIVERGED)))
         assert "stopped at tick 0" in ended(gateway, 3)
+
+
+SERIAL = "serial://{}:115200"
+
+
+@pytest.mark.parametrize("first", ["gateway", "controller"])
+@pytest.mark.parametrize("differing", ["sample_time=0.02", "plant.track=0.7"])
+def test_on_a_line_where_all_comes_in_pieces_they_compare_before_they_begin(
+    start: Start, tmp_path: Path, first: str, differing: str
+) -> None:
+    start("serial", "one", "two", "--baud", "115200")
+    wait_for((tmp_path / "two").is_symlink)
+    options = {
+        "gateway": ("--endpoint", SERIAL.format("one")),
+        "controller": ("--endpoint", SERIAL.format("two"), "--set", differing),
+    }
+    sides = {}
+    for side in (first, *(options.keys() - {first})):
+        short = ("fig6", "--duration", "0.5", "--silence", "9", "--out", side)
+        sides[side] = start(side, *short, *options[side])
+        if side == first:
+            assert "waiting for" in sides[side].stderr.readline()
+    code = 2 if differing.startswith("sample_time") else 0
+    said = [ended(process, code) for process in sides.values()]
+    for each in said:
+        assert "tell its settings" not in each
+        assert differing.partition("=")[2] in each
+    assert (tmp_path / "gateway").exists() == (tmp_path / "controller").exists() == (code == 0)

@@ -40,6 +40,9 @@ END_TRIES_OF_A_STREAM = 20
 KNOCK_PERIOD = 0.5
 """[s] Between heartbeats to a station that has not been heard."""
 
+SETTINGS_WITHIN = 0.3
+"""[s] Of the heartbeat that they follow on a stream, however slow."""
+
 TAKEN_OVER = "another station has taken over"
 
 
@@ -103,9 +106,16 @@ class Conversation:
             self._tell_of_keys()
             if self._patience.connect is not None and waited > self._patience.connect:
                 raise StationSilentError(None, waited)
+        self._hear_the_rest()
         self._begun = True
         if self._settings is None:
             self._warn("the controller does not tell its settings: nothing to compare with ours")
+
+    def _hear_the_rest(self) -> None:
+        """On a stream what follows a heartbeat, as settings may, can be a little later."""
+        until = self.now() + SETTINGS_WITHIN
+        while self._settings is None and not self._link.datagrams and self.now() < until:
+            self.listen(self._patience.repeat_after)
 
     def _knock(self) -> None:
         """A station that waits at an address of its own does not know ours before we speak."""

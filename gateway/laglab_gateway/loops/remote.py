@@ -1,5 +1,6 @@
 """The gateway's loop on the clock of a real robot: ticks happen when the robot says so."""
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from select import select
@@ -17,9 +18,13 @@ from laglab_protocol import (
     Listener,
     Parties,
     Refusals,
+    Settings,
     differences,
     refuse_other_sample_time,
 )
+
+TELLS_WITHIN = 1.0
+"""[s] Of its first tick a robot may still say what it was told: on a stream all comes in pieces."""
 
 GREETED_AGAIN = 0.3
 """[s] A robot that says nothing for so long may have begun again, and wait to be greeted."""
@@ -35,6 +40,9 @@ class RobotLine:
         self._listener = listener
         self._refusals = Refusals(monotonic(), "--plant-key")
         self._heard = self._greeted = monotonic()
+        self._compared: Settings | None = None
+        self._asked: float | None = None
+        """When its settings were missed for the first time."""
 
     @contextmanager
     def run(self) -> Iterator[None]:
@@ -95,11 +103,12 @@ class RobotLine:
         return self._refusals.news([self._listener], monotonic())
 
     def compare_settings(self) -> str:
-        """What the robot was told differently, or that it does not tell; empty when all is well.
+        """What the robot was told differently, as soon as it tells; empty when all is well.
         Raises SettingsError when it ticks at another pace."""
         robot = self._relay.robot_settings
-        if robot is None:
-            return "the robot does not tell its settings: nothing to compare with ours"
+        if robot is None or robot is self._compared:
+            return self.missed_settings(TELLS_WITHIN) if robot is None else ""
+        self._compared = robot
         told, pace = self._relay.told_robot, robot.sample_time
         parties = Parties(
             f"the robot at {self._link.name}", "this gateway", f"say --set sample_time={pace:g}"
@@ -107,6 +116,17 @@ class RobotLine:
         refuse_other_sample_time(robot, told, parties)
         said = differences(robot, told, parties)
         return f"the robot was told different things: {said}" if said else ""
+
+    def missed_settings(self, patience: float) -> str:
+        """That the robot does not tell them: once, so long [s] after the first tick."""
+        if self._relay.robot_settings is not None:
+            return ""
+        now = monotonic()
+        self._asked = now if self._asked is None else self._asked
+        if now - self._asked < patience:
+            return ""
+        self._asked = math.inf
+        return "the robot does not tell its settings: nothing to compare with ours"
 
     def forward(self) -> None:
         """Send what the robot is to have now."""
@@ -161,6 +181,8 @@ def serve_remote(relay: Relay, robot: Listener, around: Surroundings) -> Served:
             if line.seems_silent:  # it may be we who were held up
                 _relay_ticks(relay, line, conversation, around)
             line.check_silence()
+        if said := line.missed_settings(0.0):
+            around.warn(said)
     return served(relay)
 
 
@@ -170,7 +192,7 @@ def _relay_ticks(
     for _ in line.ticks():
         if relay.under_way:
             conversation.finish_tick()
-        elif said := line.compare_settings():
+        if said := line.compare_settings():
             around.warn(said)
         if relay.outcome is not None:
             return

@@ -196,7 +196,7 @@ def test_only_the_robot_itself_is_heard() -> None:
 
 
 def test_the_robot_is_greeted_and_ended_as_by_its_station() -> None:
-    greeting, settings = Receiver().receive(relay().greeting())
+    settings, greeting = Receiver().receive(relay().greeting())
     (end,) = Receiver().receive(relay().end_of_robot(EndReason.FAILED))
     assert isinstance(greeting.message, Heartbeat)
     assert isinstance(settings.message, Settings)

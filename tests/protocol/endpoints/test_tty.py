@@ -196,7 +196,7 @@ def test_what_nobody_reads_is_lost_and_holds_nobody_up(
     monkeypatch.setattr(tty, "writable", waiting)
     for frame in frames:
         robot.send(frame)
-    assert waited == [False], "it waits once"
+    assert waited in ([False], []), "it waits once at most: not at all, if we were held up"
     with pytest.raises(FarEndStalledError, match="stopped reading"):
         robot.offer(b"anybody?")
 
