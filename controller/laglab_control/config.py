@@ -15,6 +15,14 @@ from laglab_control.robot import RobotModel
 
 INITIAL_VARIANCE = 1e-4
 """P_0 = INITIAL_VARIANCE I by default [m^2, m^2, rad^2]."""
+KINDS = {
+    "estimator": str,
+    "estimator_options": Mapping,
+    "model": RobotModel,
+    "limits": SpeedLimits,
+    "guard": bool,
+}
+"""Of a StationConfig's fields that are no numbers."""
 FAR = 1000.0
 """[m] No run leads a robot further from its goal: an estimate beyond this has gone astray."""
 
@@ -56,6 +64,11 @@ class StationConfig:
     """The robot's tick that is the controller's tick 0: the law's time is the robot's."""
 
     def __post_init__(self) -> None:
+        for name, kind in KINDS.items():
+            if not isinstance(getattr(self, name), kind):
+                raise ConfigError(f"{name} must be of {kind.__name__}, not {getattr(self, name)!r}")
+        if not callable(getattr(self.law, "drive", None)):
+            raise ConfigError(f"law must be one, with a method drive, not {self.law!r}")
         estimator_kind(self.estimator, self.estimator_options)
         check(self)
         x = finite_pose(self.initial_estimate, "initial_estimate")

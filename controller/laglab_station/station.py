@@ -4,8 +4,16 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from laglab_control import MEMORY, Controller, PluginFailedError, StationConfig, at_tick
+from laglab_control import (
+    MEMORY,
+    ConfigError,
+    Controller,
+    PluginFailedError,
+    StationConfig,
+    at_tick,
+)
 from laglab_protocol import (
+    LONGEST_PLAN,
     STATION_COMPONENT,
     STATION_HEARTBEAT,
     STATION_SYSTEM,
@@ -62,7 +70,11 @@ class Station:
 
         `settings` is what the robot is told to compare with; by default what `config` knows. A
         measurement is used `playout` ticks after its sampling, or as soon as it comes if that is 0.
+
+        Raises ConfigError: more is planned than a command can tell.
         """
+        if config.plan > LONGEST_PLAN:
+            raise ConfigError(f"plan must be {LONGEST_PLAN} or less, not {config.plan}")
         self._config = config
         self._make_controller = controller
         self._clock = clock

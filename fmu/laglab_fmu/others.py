@@ -5,6 +5,9 @@ from dataclasses import dataclass
 
 from laglab_fmu.errors import CallError
 from laglab_fmu.models import Kind, model_named
+from laglab_fmu.parameters import LARGEST_SEED
+
+LARGEST = 1e300
 
 
 @dataclass(frozen=True)
@@ -17,7 +20,7 @@ class OtherParameters:
 
     @property
     def sample_time(self) -> float:
-        """[s]."""
+        """[s]. Raises as `by_name`."""
         return self.by_name()["sample_time"]
 
     def by_name(self) -> Mapping[str, float]:
@@ -36,10 +39,10 @@ class OtherParameters:
 
 
 def _number(name: str, kind: Kind, value: object) -> float:
-    if not isinstance(value, int | float):
-        raise CallError(f"{name} = {value!r} refused: it is no number")
+    if not isinstance(value, int | float) or abs(value) > LARGEST:
+        raise CallError(f"{name} = {value!r} refused: it is no number, or too large")
     if kind is Kind.FLOAT64:
         return value
-    if not float(value).is_integer():
-        raise CallError(f"{name} = {value} refused: it is no whole number")
+    if not float(value).is_integer() or abs(value) > LARGEST_SEED:
+        raise CallError(f"{name} = {value} refused: it is no whole number, or too large")
     return int(value)

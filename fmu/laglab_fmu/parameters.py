@@ -24,7 +24,7 @@ class ShippedParameters(Protocol):
         """[s]."""
 
     def by_name(self) -> Mapping[str, float]:
-        """All of them by the FMU's names, as numbers. Raises ValueError: one cannot be."""
+        """All of them by the FMU's names. Raises ValueError, CallError: one cannot be."""
 
 
 @dataclass(frozen=True)

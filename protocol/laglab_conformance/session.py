@@ -71,7 +71,7 @@ class Session(ABC):
         self._sequence = 0
         self._slowest = 0.0
         # A cable that was busy for a moment is no fault of the peer's.
-        self._listener = Listener(endpoint, self.receiver, silence=waits.refuse)
+        self._listener = Listener(endpoint, self.receiver, silence=waits.refuse / 2)
 
     @property
     def refusal(self) -> float:

@@ -6,11 +6,12 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import get_args
 
-from laglab.errors import RunError, ScenarioError
+from laglab.errors import ResultsError, RunError, ScenarioError
+from laglab.extras import DRAWING, STEPPING, require
 from laglab.progress import progress_of
 from laglab.results.columns import read_columns
 from laglab.results.complete import Way, complete, keep
-from laglab.results.place import place
+from laglab.results.place import place, withdrawn_unless_begun
 from laglab.results.run import Kept, Run
 from laglab.results.shadows import read_shadow, shadow_file
 from laglab.runs.ending import Ending
@@ -46,6 +47,7 @@ def run(
 
     Raises:
         ScenarioError: there is no such scenario or transport, or it cannot be.
+        MissingExtraError: what it needs is not installed.
         PlaceError: the results cannot go there.
         RunError: the run was cut short; what it left is in `out`.
         KeyboardInterrupt: Ctrl-C; what was recorded is in `out`, and nothing goes on running.
@@ -55,8 +57,12 @@ def run(
     if controller is not Controller and transport != "inline":
         raise ScenarioError(f"controller: {transport} has the station in a process of its own")
     chosen = _chosen(scenario, overrides)
+    if chosen.plant.ships or chosen.plant.fmu is not None:
+        require(STEPPING)
     if out is None:
         chosen.must_end()  # memory has no room for what does not end
+    else:
+        require(DRAWING)
     way = Way(transport=transport, plant=chosen.plant.called)
     with ExitStack() as stack:
         told = stack.enter_context(progress_of(chosen, progress))
@@ -66,10 +72,11 @@ def run(
             return _whole(ending, keep(chosen, way, ending, recorder))
         if out is not None:
             directory = place(chosen, Path(out), force)
+            stack.enter_context(withdrawn_unless_begun(directory))
         else:
             directory = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="laglab-")))
         ending = run_into(directory, chosen, transport, told, controller=controller)
-        done = complete(chosen, way, ending, directory, figure=out is not None)
+        done = _completed(chosen, way, ending, directory, figure=out is not None)
         return _whole(ending, done if out is not None else _in_memory(done))
 
 
@@ -77,6 +84,16 @@ def _chosen(scenario: Scenario | str | Path, overrides: Mapping[str, object] | N
     if isinstance(scenario, Scenario):
         return scenario.overridden(overrides) if overrides else scenario
     return load(str(scenario), overrides)
+
+
+def _completed(scenario: Scenario, way: Way, ending: Ending, directory: Path, figure: bool) -> Run:
+    """Raises as `complete`; when the run had a problem already, that."""
+    try:
+        return complete(scenario, way, ending, directory, figure)
+    except ResultsError as error:
+        if ending.problem:
+            raise RunError(ending.problem) from error
+        raise
 
 
 def _whole(ending: Ending, done: Run) -> Run:

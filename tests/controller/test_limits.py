@@ -17,6 +17,7 @@ from laglab_control import (
     SpeedLimits,
     StationConfig,
 )
+from laglab_station import Station
 
 NAN, INF = float("nan"), float("inf")
 NOT_POSITIVE = [0.0, -1.0, NAN, INF, -INF, True, "3", [1.0], 10**400]
@@ -108,3 +109,27 @@ def test_a_start_that_no_run_leads_to_the_goal_from():
 def test_who_catches_either_tree_catches_it():
     assert issubclass(ConfigError, ControlError)
     assert issubclass(ConfigError, ValueError)
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("estimator", 3),
+        ("estimator_options", 3),
+        ("model", 3),
+        ("law", 3),
+        ("law", None),
+        ("limits", 3),
+        ("guard", "no"),
+        ("guard", 1),
+    ],
+)
+def test_what_a_station_is_told_is_of_its_kind(field, value):
+    with pytest.raises(ConfigError, match=rf"^{field} must be "):
+        StationConfig(**{field: value})
+
+
+def test_no_more_is_planned_than_a_command_can_tell():
+    with pytest.raises(ConfigError, match="plan must be 240 or less, not 241"):
+        Station(StationConfig(plan=241))
+    assert Station(StationConfig(plan=240)).tick is None

@@ -69,6 +69,9 @@ def test_a_fleet_is_of_one_model_with_parameters_that_it_has() -> None:
         Fleet.open([OtherParameters("Car", {"wheelbase": "long"})])
     with pytest.raises(CallError, match=r"integration = 1.5 refused: it is no whole number"):
         Fleet.open([OtherParameters("Car", {"integration": 1.5})])
+    for unfit in ({"seed": 2**32 + 5}, {"wheelbase": 10**400}):
+        with pytest.raises(CallError, match="or too large"):
+            Fleet.open([OtherParameters("Car", unfit)])
     with pytest.raises(CallError, match="wheelbase = -1 refused"):
         Fleet.open([OtherParameters("Car", {"wheelbase": -1.0})])
     with Fleet.open([car]) as fleet, pytest.raises(ValueError, match="Omni for a fleet of Car"):

@@ -104,9 +104,26 @@ def test_there_is_a_fleet_of_each_of_ours(kind: str) -> None:
 def test_there_is_none_of_others() -> None:
     said = "of ice:Skater there is one a run, and no fleet (plant)"
     assert why_one_by_one(load("lab", {"plant.kind": "ice:Skater"})) == said
-    said = "what is no number is told to one at a time (plant.parameters)"
-    told = {"plant.kind": "car", "plant.parameters.wheelbase": "0.5"}
-    assert why_one_by_one(load("lab", told)) == said
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        {"wheelbase": "0.5"},
+        {"sample_time": 0.02},
+        {"measurement_noise_gain": 2.0},
+        {"v_command": 1.0},
+        {"noise": 0.5},
+        {"integration": 1.5},
+    ],
+)
+def test_what_a_fleet_is_not_told_as_one_alone_is_told_to_each(told: dict[str, object]) -> None:
+    """The step of a run is the scenario's, whatever the robot's own parameter says."""
+    said = "one of its parameters is set for each by itself (plant.parameters)"
+    parameters = {f"plant.parameters.{name}": value for name, value in told.items()}
+    assert why_one_by_one(load("lab", {"plant.kind": "car", **parameters})) == said
+    common = {"plant.parameters.wheelbase": 0.4, "plant.parameters.sample_time": 0.01}
+    assert why_one_by_one(load("lab", {"plant.kind": "car", **common})) is None
 
 
 def test_what_the_fmu_refuses_is_named_by_its_place_in_the_grid(tmp_path: Path) -> None:

@@ -101,3 +101,16 @@ def test_numbers_that_no_picture_has_room_for_are_told_in_a_line(
     assert code == 4, errors
     assert len(errors.splitlines()) == 1
     assert "cannot be drawn" in errors
+
+
+@pytest.mark.parametrize("how", ["empty", "binary", "a folder", "gone"])
+def test_in_python_a_damaged_trace_is_an_error_of_ours(how: str, copied: Path) -> None:
+    if how == "gone":
+        (copied / "trace.csv").unlink()
+    else:
+        damage(copied / "trace.csv", how)
+    run = laglab.open_run(copied)
+    with pytest.raises(laglab.LaglabError, match=r"trace\.csv"):
+        _ = run.trace
+    with pytest.raises(laglab.LaglabError, match=r"trace\.csv"):
+        next(run.pieces())

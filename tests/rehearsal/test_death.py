@@ -121,6 +121,9 @@ def test_a_run_whose_side_is_killed_says_which(victim: str, transport: Any, tmp_
     assert time.monotonic() - started < 10 + NOTICED_WITHIN
     assert ending.outcome is None
     assert f"the {victim} process was killed by SIGKILL" in str(ending.problem)
+    if victim == "controller":
+        assert "has been silent since tick" in str(ending.problem)
+        assert ending.link is not None
     assert not children()
     assert_whole(tmp_path / "trace.csv")
 

@@ -176,9 +176,36 @@ def test_without_fmpy_runs_are_compared_and_replayed(no_fmpy: Python, laglab: Py
     for arguments in (
         ("compare", "run", "run", "--out", "both.png"),
         ("replay", "run/robot.tlog", "--estimator", "delayed-ekf"),
+        ("replay", "run", "--estimator", "delayed-ekf"),
     ):
         ended = no_fmpy("-m", "laglab", *arguments)
         assert ended.returncode == 0, ended.stderr
     for arguments in (("run", "fig6"), ("gateway", "fig6"), ("fmu", "build"), ("errata",)):
         line = one_line(no_fmpy("-m", "laglab", *arguments))
         assert "fmpy is not installed here: pip install 'laglab[" in line
+
+
+IN_PYTHON = """
+import laglab
+try:
+    {}
+except laglab.LaglabError as error:
+    print(error)
+"""
+
+
+@pytest.mark.parametrize(
+    ("missing", "script"),
+    [
+        ("fmpy", "laglab.run('fig6', {'duration': 0.1})"),
+        ("matplotlib", "laglab.run('fig6', {'duration': 0.1}).figure()"),
+        ("matplotlib", "laglab.run('fig6', {'duration': 0.1}, out='run')"),
+    ],
+)
+def test_in_python_what_is_missing_is_said_as_on_the_command_line(
+    missing: str, script: str, tmp_path: Path
+) -> None:
+    ended = without(tmp_path, {missing})("-c", IN_PYTHON.format(script))
+    assert ended.returncode == 0, ended.stderr
+    assert f"{missing} is not installed here: pip install 'laglab[" in ended.stdout
+    assert not (tmp_path / "run").exists()

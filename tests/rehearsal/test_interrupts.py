@@ -157,6 +157,23 @@ def test_a_run_without_end_lasts_until_ctrl_c_and_its_results_are_written(
     assert load(str(tmp_path / "run" / "scenario.toml")).last_tick is None
 
 
+@pytest.mark.parametrize("out", [(), ("--out", "run")])
+def test_a_run_that_had_not_begun_leaves_nothing_in_the_way(
+    start: Start, tmp_path: Path, out: tuple[str, ...]
+) -> None:
+    """Of a gateway whose station never came, say."""
+    waiting = ("gateway", "lab", "--endpoint", "udpin://127.0.0.1:0", *out)
+    gateway = start(*waiting)
+    assert "waiting for" in gateway.stderr.readline()
+    place = tmp_path / ("run" if out else "runs/lab")
+    while not (place / "scenario.toml").exists():
+        time.sleep(0.01)
+    gateway.send_signal(signal.SIGINT)
+    gateway.communicate(timeout=20)
+    assert gateway.returncode == 130
+    assert not place.exists()
+
+
 SLOW_LAW = """
 from pathlib import Path
 from time import sleep

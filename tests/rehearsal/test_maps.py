@@ -128,6 +128,11 @@ def test_panels_that_cannot_be_are_told(asked: dict[str, str], said: str):
         draw_study(study({N: [0, 1], M: list(range(7)), KIND: ["raw", "popf"]}), **asked)
 
 
+def test_panels_alone_are_no_map():
+    with pytest.raises(StudyError, match=f"--panels: beside {N} nothing was varied"):
+        draw_study(study({N: [0, 1], KIND: ["raw"]}), panels=N)
+
+
 def test_panels_are_those_that_are_asked_for(folder: Path):
     out, asked = folder / "map.png", ("--x", M, "--y", KIND, "--panels", N)
     assert failed("map", folder, *asked, "--value", "rms_x", "--out", out) == 0

@@ -217,6 +217,7 @@ def test_an_end_ends_no_gateway_that_waits_and_no_run_that_it_is_not_of(
         for tick in (0, 7, 1000):
             past.send(sender.frame(End(tick, EndReason.DIVERGED)))
         time.sleep(0.3)
+        assert past.receive(0.0) == b""  # it is no station's call
         past.send(sender.frame(HEARTBEAT))
         while not any(isinstance(each.message, Tick) for each in frames_in(past.receive(2.0))):
             pass

@@ -15,9 +15,10 @@ def test_lateness_is_kept_apart_from_the_trace(laglab: Laglab, tmp_path: Path) -
     options = ("--pace", "realtime", "--speed", "4", "--duration", "4", "--out", "run")
     assert laglab("run", "lab", *options).returncode == 0
     summary = json.loads((tmp_path / "run" / "summary.json").read_text())
-    assert 0.5 < summary["wall_time_s"] < 3.0  # a busy machine begins or ends late
-    assert summary["real_time_factor"] == pytest.approx(4.0 / summary["wall_time_s"])
     timing = summary["timing"]
+    assert timing["p50_s"] < 0.01  # of deadlines four times as fast
+    began_late = float((tmp_path / "run" / "timing.csv").read_text().splitlines()[1].split(",")[1])
+    assert summary["wall_time_s"] > 0.99 - began_late
     assert timing.keys() == {"p50_s", "p99_s", "max_s", "missed_deadlines"}
     assert 0 < timing["p50_s"] <= timing["p99_s"] <= timing["max_s"]
     with (tmp_path / "run" / "timing.csv").open(newline="") as file:

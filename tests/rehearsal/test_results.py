@@ -157,6 +157,9 @@ def test_where_the_last_measurements_are_still_on_their_way_the_others_tell() ->
     trace |= {f"{axis}_meas": measured for axis in axes}
     assert has_converged(trace, (0.0, 0.0, 0.0))
     assert not has_converged(trace, (0.2, 0.0, 0.0))
+    backwards = trace | {"theta_meas": np.pi + 3 * measured}
+    assert not has_converged(backwards, (0.0, 0.0, 0.0))
+    assert has_converged(backwards, (0.0, 0.0, np.pi))
 
 
 FAILING = """

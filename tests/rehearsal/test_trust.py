@@ -123,3 +123,12 @@ def test_what_is_not_known_is_one_line(options, refused):
     said = refused("trust", *options)
     assert "not one of" in said or "must be one of" in said
     assert "'nonsense'" in said
+
+
+def test_a_filter_that_cannot_be_had_is_told_before_anything_runs(ended, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    code, _, said = ended("trust", "--only", "lab", "--seeds", "1", "--estimator", "nowhere:Filter")
+    assert code == 2
+    assert "nowhere:Filter" in said
+    assert len(said.splitlines()) == 1
+    assert not list(tmp_path.rglob("*.parquet"))

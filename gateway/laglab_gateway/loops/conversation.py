@@ -18,6 +18,7 @@ from laglab_gateway.side import RobotSide
 from laglab_gateway.speakers import from_station
 from laglab_protocol import (
     MAV_SEVERITY_ERROR,
+    End,
     EndpointError,
     EndReason,
     Frame,
@@ -145,6 +146,8 @@ class Conversation:
     def listen(self, timeout: float) -> None:
         """Take what arrives, for at most `timeout` [s]."""
         frames = self._listener.listen(timeout)
+        if frames and not self._gateway.connected:  # an END is of a past run, and no station's call
+            frames = [frame for frame in frames if not isinstance(frame.message, End)]
         if frames and any(from_station(frame) for frame in frames):
             frames = self._of_the_station_in_force(frames)
         if frames:

@@ -39,7 +39,7 @@ def export(run: Run, name: FormatName, out: Path | None = None, force: bool = Fa
     Raises:
         MissingExtraError: what writes the format is not installed.
         PlaceError: it cannot go there.
-        NoRunError, TraceError: the run's files are damaged.
+        NoRunError: the run's files are damaged.
         ResultsError: there is no room for it.
     """
     chosen = FORMATS[name]

@@ -28,7 +28,7 @@ class Table(NamedTuple):
 
     @property
     def pieces(self) -> Iterator[Columns]:
-        """Its columns, each of the type that its unit says. Raises NoRunError, TraceError."""
+        """Its columns, each of the type that its unit says. Raises NoRunError."""
         for piece in self.rows:
             for column in self.columns:
                 self._check(column, piece[column.name])

@@ -80,7 +80,7 @@ def complete(
         numbers = digest(trace_pieces(directory / TRACE_FILE), scenario.link.m)
     except TraceError as error:
         why = nothing_recorded(ending, str(error))
-        if isinstance(why, RefusedError):
+        if isinstance(why, RefusedError | KeyboardInterrupt):
             withdraw(directory)
         raise why from None
     failed: list[str] = []

@@ -101,7 +101,12 @@ def off_in_the_end(trace: Trace, goal: Goal) -> Array:
     if not is_measured(trace):
         return off
     off = off[~np.isnan(off).any(axis=1)]
-    return off.mean(axis=0, keepdims=True) if len(off) else off
+    if not len(off):
+        return off
+    off[:, 2] = off[0, 2] + wrapped(off[:, 2] - off[0, 2])  # or who stands backwards is at 0
+    mean: Array = off.mean(axis=0, keepdims=True)
+    mean[:, 2] = wrapped(mean[:, 2])
+    return mean
 
 
 class RmsError:

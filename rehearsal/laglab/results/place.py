@@ -1,7 +1,8 @@
 """Where a run's results go."""
 
 import re
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from laglab.errors import PlaceError
@@ -52,6 +53,25 @@ def withdraw(directory: Path) -> None:
         for name in OURS:
             (directory / name).unlink(missing_ok=True)
         directory.rmdir()  # if nothing of somebody else's is there
+
+
+@contextmanager
+def withdrawn_unless_begun(directory: Path) -> Iterator[None]:
+    """An interrupt before a run's first tick leaves nothing in the way of the next run."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        if not _has_rows(directory / TRACE_FILE):
+            withdraw(directory)
+        raise
+
+
+def _has_rows(trace: Path) -> bool:
+    """Below its line of names."""
+    with suppress(OSError), trace.open("rb") as file:
+        file.readline()
+        return bool(file.readline())
+    return False
 
 
 def fresh(parent: Path, name: str) -> Path:

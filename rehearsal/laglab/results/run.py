@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from laglab.errors import NoRunError, ResultsError
-from laglab.extras import FRAMES, require
+from laglab.extras import DRAWING, FRAMES, require
 from laglab.results.columns import (
     Columns,
     at_ticks,
@@ -32,6 +33,7 @@ from laglab_gateway import (
     TIMING_FILE,
     TRACE_FILE,
     Trace,
+    TraceError,
     read_trace,
     trace_pieces,
 )
@@ -43,6 +45,15 @@ if TYPE_CHECKING:
 SCENARIO_FILE = "scenario.toml"
 MOST_DRAWN = 20_000
 """Rows: more than that no figure shows."""
+
+
+@contextmanager
+def _as_ours() -> Iterator[None]:
+    """What a trace cannot be read for, as any other table."""
+    try:
+        yield
+    except TraceError as error:
+        raise NoRunError(str(error)) from error
 
 
 class Kept(NamedTuple):
@@ -72,8 +83,8 @@ class Run:
 
     @cached_property
     def trace(self) -> Trace:
-        """All columns, each of shape (ticks + 1,). Raises TraceError, NoRunError."""
-        trace = self.kept.trace if self.kept else read_trace(self._folder / TRACE_FILE)
+        """All columns, each of shape (ticks + 1,). Raises NoRunError."""
+        trace = self.kept.trace if self.kept else self._read_trace()
         for name in self.scenario.estimator.compare:
             trace = trace | shadowing(trace, self._shadow(name), name)
         return trace
@@ -114,8 +125,9 @@ class Run:
     def figure(self, width: Width = "two") -> Figure:
         """The run as a picture, as wide as one column of a page or as two, to be shown or saved.
 
-        Needs matplotlib. Raises ResultsError, TraceError.
+        Raises MissingExtraError without matplotlib, and ResultsError, NoRunError.
         """
+        require(DRAWING)
         return draw_run(self, width)
 
     @property
@@ -166,8 +178,16 @@ class Run:
         return frame.astype({"tick": int}).set_index("tick")
 
     def pieces(self) -> Iterator[Trace]:
-        """The trace, as many rows at a time as memory always has room for."""
-        return iter([self.kept.trace]) if self.kept else trace_pieces(self._folder / TRACE_FILE)
+        """The trace, as many rows at a time as memory always has room for. Raises NoRunError."""
+        if self.kept:
+            yield self.kept.trace
+            return
+        with _as_ours():
+            yield from trace_pieces(self._folder / TRACE_FILE)
+
+    def _read_trace(self) -> Trace:
+        with _as_ours():
+            return read_trace(self._folder / TRACE_FILE)
 
     def _table(self, name: str) -> Columns:
         return (

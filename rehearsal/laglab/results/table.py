@@ -26,6 +26,7 @@ def results_table(summary: Summary) -> Table:
 def summary_rows(summary: Summary) -> dict[str, str]:
     """Name → value, as far as there is something to say."""
     seen = " (measured)" if summary.pose == "measured" else ""
+    late = " (measured, last second)" if seen else ""
     estimated = summary.compare or {summary.estimator: summary.rms_error}
     final, following = summary.final, summary.following
     return {
@@ -33,7 +34,7 @@ def summary_rows(summary: Summary) -> dict[str, str]:
         "estimator": summary.estimator,
         **({} if summary.law in ("polar", "unknown") else {"law": summary.law}),
         "delays n, m": f"{summary.n} and {summary.m} ticks",
-        f"pose error at the end{seen}": f"ρ {_number(final.rho)} m, "
+        f"pose error at the end{late}": f"ρ {_number(final.rho)} m, "
         f"θ {_number(final.theta_error)} rad",
         **({f"distance to the path{seen}": _distance(following)} if following else {}),
         "speeds at the end": f"v {_number(final.v)} m/s, ω {_number(final.omega)} rad/s",

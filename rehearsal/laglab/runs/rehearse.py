@@ -39,8 +39,11 @@ from laglab_station import MakeController, Station, StationReport
 
 Transport = Literal["inline", "udp", "serial"]
 
-NOTICE_SECONDS = 1.0
-"""[s] What a gateway needs, besides the silence timeout, to say that its station is silent."""
+NOTICE_SECONDS = 4.0
+"""[s] What a gateway needs, besides the silence timeout, to say that its station is silent: on a
+stream it tries for two to tell it of the end."""
+STILL_STARTING = 0.5
+"""[s] A side that has not met the other yet has no last words."""
 GOODBYE_SECONDS = 5.0
 """[s] What a side needs for its last words when the other has ended in order, on a busy machine."""
 
@@ -159,7 +162,7 @@ class _Rehearsal:
                 self._read_on(self._scenario.silence_timeout + NOTICE_SECONDS)
             except KeyboardInterrupt:
                 self._gateway.stop()
-                self._read_on(GOODBYE_SECONDS)
+                self._read_on(GOODBYE_SECONDS if self._ending.begun else STILL_STARTING)
         return self._summed_up()
 
     def _first_address(self) -> str | None:

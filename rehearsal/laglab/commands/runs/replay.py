@@ -17,13 +17,15 @@ from laglab.results.shadows import collected, file_name, kept_rows, shadow_rows
 from laglab.scenario import load
 from laglab.scenario.tables.estimator import COMPARABLE
 from laglab.tables import terminal
-from laglab_gateway import TRACE_FILE, read_trace
+from laglab_gateway import TLOG_FILE, TRACE_FILE, read_trace
 from laglab_station import read_session
 
 TlogArgument = Annotated[
     Path,
     typer.Argument(
-        metavar="TLOG", help="A session's telemetry log, robot.tlog.", exists=True, dir_okay=False
+        metavar="TLOG",
+        help="A session's telemetry log, robot.tlog, or a run's folder.",
+        exists=True,
     ),
 ]
 
@@ -59,6 +61,7 @@ def replay(
     require(DRAWING)
     if report:
         require(SEEING)
+    tlog = tlog / TLOG_FILE if tlog.is_dir() else tlog
     overrides = {} if p0 is None else {"estimator.initial_covariance": p0}
     told = load(scenario or str(tlog.parent / SCENARIO_FILE), overrides)
     session = list(read_session(tlog))

@@ -21,7 +21,7 @@ from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, SEEING, require
 from laglab.progress import progress_of
 from laglab.results.complete import Way
-from laglab.results.place import place
+from laglab.results.place import place, withdrawn_unless_begun
 from laglab.runs.plant import check_plant
 from laglab.runs.rehearse import Transport
 from laglab.runs.robot_side import Setup, wrapped_replay
@@ -67,7 +67,7 @@ def run(
     way = Way("both", transport, plant or scenario.plant.called)
     with shown_live(scenario, way, live, open_) as page:
         directory = place(scenario, out, force)
-        with progress_of(scenario) as told:
+        with withdrawn_unless_begun(directory), progress_of(scenario) as told:
             setup = replace(setup, live=page.line if page else None)
             ending = run_into(directory, scenario, transport, told, setup)
         conclude(scenario, way, ending, directory, report, page)

@@ -21,7 +21,7 @@ from laglab.extras import SEEING, STEPPING, require
 from laglab.live import fed, watched_station
 from laglab.progress import progress_of
 from laglab.results.complete import Way
-from laglab.results.place import place
+from laglab.results.place import place, withdrawn_unless_begun
 from laglab.results.station import StationGlance, StationRecord
 from laglab.runs.alone import answer_alone, serve_alone
 from laglab.runs.clock import LoopClock
@@ -109,6 +109,7 @@ def gateway(
             say(f"a ground station may look on at {each.name}")
         line = page.line if page else None
         with (
+            withdrawn_unless_begun(directory),
             progress_of(scenario) as told,
             fed(FileRecorder(directory), line, robot.controls) as files,
         ):
@@ -150,7 +151,7 @@ def controller(
         with shown_live(scenario, way, live, open_) as page:
             directory = place(scenario, out, force, suffix="-station")
             _say_whom_we_wait_for("the robot", link)
-            with progress_of(scenario) as told:
+            with withdrawn_unless_begun(directory), progress_of(scenario) as told:
                 glance = StationGlance(scenario) if scenario.pace == "realtime" else None
                 clock = LoopClock(lambda tick: told(tick, glance.now() if glance else None))
                 record = StationRecord(directory, scenario.sample_time, _warn, clock, glance)

@@ -25,7 +25,7 @@ class Written(NamedTuple):
 
 
 def write_mcap(run: Run, file: BinaryIO) -> Written:
-    """Every message of the run, and its scenario as an attachment. Raises NoRunError, TraceError.
+    """Every message of the run, and its scenario as an attachment. Raises NoRunError.
 
     The same run gives the same bytes: no time of day is in them.
     """

@@ -59,7 +59,7 @@ class Said(NamedTuple):
 
 
 def said(run: Run) -> Iterator[Said]:
-    """All that a run says, however long it is. Raises NoRunError, TraceError."""
+    """All that a run says, however long it is. Raises NoRunError."""
     every, link, arrivals = tables(run)
     streams = (_of_ticks(run, every), _of_arrivals(run, arrivals), _of_link(run, link))
     return merge(*streams, key=lambda each: each.logged)

@@ -48,7 +48,7 @@ def animation_place(path: Path) -> Path:
 def save_animation(runs: Sequence[Run], path: Path) -> None:
     """The robots on their ways and their headings, side by side, as an endless GIF.
 
-    Raises: ResultsError, TraceError.
+    Raises ResultsError.
     """
     from matplotlib.animation import FuncAnimation, PillowWriter
 

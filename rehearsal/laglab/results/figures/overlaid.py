@@ -35,7 +35,7 @@ def draw_runs(runs: Sequence[Run], width: Width = "two") -> Figure:
     """The paths; x, y, θ; how far each estimate was from the robot, or from where it was measured,
     as it then says; speeds and delays. The title says in which keys the scenarios differ.
 
-    Raises: ResultsError, TraceError.
+    Raises ResultsError.
     """
     told = [shown(run) for run in runs]
     names = labels(runs)

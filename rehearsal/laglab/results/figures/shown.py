@@ -127,7 +127,7 @@ def broken(time: Array, rows: Array, longest: float) -> tuple[Array, Array]:
 
 
 def shown(run: Run) -> Shown:
-    """All that is drawn of it. Raises ResultsError, TraceError."""
+    """All that is drawn of it. Raises ResultsError."""
     trace = run.drawn
     unit = clock(float(trace["time"][-1]))
     claims = run.drawn_table(CLAIMS_FILE)

@@ -50,7 +50,7 @@ def draw_run(run: Run, width: Width = "two") -> Figure:
     """The path; x, y, θ errors with what is claimed of them (of a run without an estimate x, y, θ
     themselves); where estimators shadowed the run their errors; speeds; the link strip.
 
-    Raises: ResultsError, TraceError.
+    Raises ResultsError.
     """
     if width not in INCHES:
         raise ResultsError(f"width: take one of {', '.join(INCHES)}, not {width!r}")

@@ -35,7 +35,7 @@ MOST_MARKS = 2_000
 
 
 def tables_of(run: Run, view: LinkView, most: int) -> Tables:
-    """With at most `most` ticks. Raises: ResultsError, TraceError."""
+    """With at most `most` ticks. Raises ResultsError."""
     trace = thinned(run.drawn, stride(len(run.drawn["tick"]), most))
     every = stride(run.summary.ticks, most)
     claims = joined(_taken(run, CLAIMS_FILE, lambda each: at_ticks(each, trace["tick"])))

@@ -24,7 +24,7 @@ MOST_RUNS = 8
 
 def report_html(runs: Sequence[Run]) -> str:
     """One file that needs no other, and is no larger than LARGEST: where shadows and losses take
-    room, with fewer ticks. Raises: ResultsError, TraceError."""
+    room, with fewer ticks. Raises ResultsError."""
     most = MOST_ROWS // len(runs)
     while len((text := _html(runs, most)).encode()) > LARGEST and most > FEWEST:
         most //= 2
@@ -44,7 +44,7 @@ def _html(runs: Sequence[Run], most: int) -> str:
 
 
 def save_report(runs: Sequence[Run], path: Path) -> None:
-    """The same as a file. Raises: ResultsError, TraceError."""
+    """The same as a file. Raises ResultsError."""
     text = report_html(runs)
     write_whole(path, text)
 

@@ -1,13 +1,12 @@
 """Whether the covariance that a filter claims is the one its error has, over many seeds."""
 
 from laglab.studies.consistency.judging import Job, Sample, judge, judged, nth, samples
+from laglab.studies.consistency.over_seeds import chi_square_bounds, consistencies
 from laglab.studies.consistency.report import consistency_table, draw_consistency
-from laglab.studies.consistency.tally import Tally, chi_square_bounds, consistencies
 
 __all__ = [
     "Job",
     "Sample",
-    "Tally",
     "chi_square_bounds",
     "consistencies",
     "consistency_table",

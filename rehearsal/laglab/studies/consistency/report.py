@@ -14,7 +14,7 @@ from laglab.results.figures.panels import marked
 from laglab.results.figures.style import BLUE, GREY, PALE, short
 from laglab.results.numbers import mean_of_known
 from laglab.scenario import Scenario
-from laglab.studies.consistency.tally import CONFIDENCE, DEGREES, Average, Consistency
+from laglab.studies.consistency.over_seeds import CONFIDENCE, DEGREES, Average, Consistency
 from laglab.tables import plain_table
 
 if TYPE_CHECKING:
@@ -45,7 +45,8 @@ def consistency_table(scenario: Scenario, filters: Sequence[Consistency], seeds:
 
 
 def _cells(one: Consistency) -> list[str]:
-    claimed, true = (np.sqrt(mean_of_known(v**2)) for v in (one.claimed, one.true))
+    with np.errstate(all="ignore"):  # of a filter that diverges
+        claimed, true = (np.sqrt(mean_of_known(v**2)) for v in (one.claimed, one.true))
     return [
         f"{one.nees.mean:.2f}",
         f"{one.nees.inside:.0%}",

@@ -7,7 +7,7 @@ link does more than delay, what happens when is found out first, seed by seed (`
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -19,6 +19,7 @@ from laglab.scenario import Scenario
 from laglab.studies.many.schedule import schedule_of
 from laglab_control.batch import BATCHED, BatchController, Pose, Speeds, Symmetric
 from laglab_control.batch.impaired import ImpairedController, Timetable
+from laglab_fmu import CallError, OtherParameters
 from laglab_gateway import Safety
 from laglab_gateway.drive import FASTEST
 
@@ -78,8 +79,8 @@ def why_one_by_one(scenario: Scenario) -> str | None:
         f"of {scenario.plant.called} there is one a run, and no fleet (plant)": (
             not scenario.plant.ships
         ),
-        "what is no number is told to one at a time (plant.parameters)": not all(
-            isinstance(value, int | float) for value in scenario.plant.parameters.values()
+        "one of its parameters is set for each by itself (plant.parameters)": not _are_common(
+            scenario
         ),
         "there are no plans for many robots (plan)": link.plan > 0,
         "there is no play-out for many robots (playout)": bool(
@@ -97,6 +98,24 @@ def why_one_by_one(scenario: Scenario) -> str | None:
         ),
     }
     return next((reason for reason, holds in reasons.items() if holds), None)
+
+
+def _are_common(scenario: Scenario) -> bool:
+    """Whether the plant's parameters are among those that a fleet is told, as it is told them."""
+    plant = scenario.plant
+    if not (plant.ships and plant.parameters):
+        return True
+    sample_time = plant.parameters.get("sample_time", scenario.sample_time)
+    return sample_time == scenario.sample_time and _is_told(plant.kind, plant.parameters)
+
+
+def _is_told(kind: str, named: Mapping[str, object]) -> bool:
+    """Whether a fleet of that robot can be told them; which values it takes it says itself."""
+    try:
+        OtherParameters(kind.capitalize(), named).by_name()
+    except CallError:
+        return False
+    return True
 
 
 def is_ideal(scenario: Scenario) -> bool:

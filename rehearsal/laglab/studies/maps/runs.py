@@ -92,6 +92,8 @@ def layout(
     numeric = [key for key in left if runs.is_numeric(key)]
     if x is None:
         x = (numeric or left or [None])[0]  # type: ignore[list-item]
+    if x is None and panels:
+        raise StudyError(f"--panels: beside {panels} nothing was varied: leave it out")
     if x is None:
         raise StudyError(f"{runs.name}: its grid has one value of each key: no map to draw")
     left, numeric = ([key for key in of if key != x] for of in (left, numeric))

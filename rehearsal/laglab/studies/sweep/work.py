@@ -10,8 +10,8 @@ from pydantic import ValidationError
 from laglab.errors import ScenarioError, StudyError
 from laglab.runs.errors import SIDE_ERRORS
 from laglab.runs.plant import check_plant
+from laglab.runs.station_side import check_parts
 from laglab.scenario.problems import first_problem
-from laglab.scenario.tables.plant import PlantTable
 from laglab.studies.sweep.cells.cell import Cell
 from laglab.studies.sweep.cells.ways import How, how, seconds
 from laglab.studies.sweep.study import Study
@@ -21,6 +21,10 @@ if TYPE_CHECKING:
 
 MOST_RUNS = 1_000_000
 """More than that are run only when somebody says that they are meant."""
+
+
+PARTS = {"plant", "estimator", "law", "sample_time"}
+"""Of a scenario what somebody may have brought, and is tried once, before anything runs."""
 
 
 class Work(NamedTuple):
@@ -42,13 +46,13 @@ def work_left(*studies: Study, folder: "Folder | None" = None) -> Work:
     folder or not, cannot be run."""
     ways: Counter[How] = Counter()
     cost = 0.0
-    tried = set[tuple[PlantTable, float]]()
+    tried = set[str]()
     for study, cell in chain.from_iterable(map(_named, studies)):
         check(study, cell)
-        robot = cell.scenario.plant, cell.scenario.sample_time
-        if robot not in tried:
-            tried.add(robot)
-            _check_robot(study, cell)
+        parts = cell.scenario.model_dump_json(include=PARTS)
+        if parts not in tried:
+            tried.add(parts)
+            _check_parts(study, cell)
         if folder is None or not folder.has(cell):
             ways[how(cell)] += len(cell.seeds)
             cost += seconds(cell)
@@ -59,10 +63,11 @@ def _named(study: Study) -> Iterator[tuple[Study, Cell]]:
     return ((study, cell) for cell in study.cells())
 
 
-def _check_robot(study: Study, cell: Cell) -> None:
-    """Raises StudyError: its plant cannot be had, or not with these keys."""
+def _check_parts(study: Study, cell: Cell) -> None:
+    """Raises StudyError: its plant, its filter or its law cannot be had, or not with these keys."""
     try:
         check_plant(cell.scenario)
+        check_parts(cell.scenario)
     except SIDE_ERRORS as error:
         raise StudyError(f"{study.name}: with {cell.place}: {error}") from None
 

@@ -108,7 +108,7 @@ class Running:
             return Average(self._sum / self._known, self._known)
 
 
-class Tally:
+class _Sums:
     """One filter over seeds; each counts up to where it diverged."""
 
     def __init__(self, estimator: str, last_tick: int, measurement_delay: int) -> None:
@@ -122,6 +122,10 @@ class Tally:
 
     def add(self, sample: Sample) -> None:
         """The next seed."""
+        with np.errstate(over="ignore"):  # of a filter that diverges
+            self._add(sample)
+
+    def _add(self, sample: Sample) -> None:
         error, variances, nees, nis, nees_ahead = (each[self._delay :] for each in sample)
         self._nees.add(nees)
         self._nis.add(nis)
@@ -154,7 +158,7 @@ def consistencies(
     names: Sequence[str], seeds: Iterable[Mapping[str, Sample]], last_tick: int, m: int
 ) -> list[Consistency]:
     """On the filters of these names, of all seeds; `last_tick`: of a run where nothing diverges."""
-    tallies = {name: Tally(name, last_tick, m) for name in names}
+    tallies = {name: _Sums(name, last_tick, m) for name in names}
     for samples in seeds:
         for name, tally in tallies.items():
             tally.add(samples[name])
