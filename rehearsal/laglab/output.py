@@ -33,7 +33,7 @@ def guarded(work: Callable[[], int]) -> int:
         return code
     if isinstance(failure, BrokenPipeError):
         return READER_GONE
-    if not errors.failure:
+    with _lasting("stderr"):
         print(f"laglab: cannot write the output: {failure.strerror}", file=sys.stderr)
     return CANNOT_WRITE
 

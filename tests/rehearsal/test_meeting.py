@@ -254,3 +254,23 @@ def test_on_a_line_where_all_comes_in_pieces_they_compare_before_they_begin(
         assert "tell its settings" not in each
         assert differing.partition("=")[2] in each
     assert (tmp_path / "gateway").exists() == (tmp_path / "controller").exists() == (code == 0)
+
+
+@pytest.mark.parametrize("differing", ["sample_time=0.02", "plant.track=0.7"])
+def test_a_real_robot_at_the_end_of_a_line_is_compared_with_before_it_begins(
+    start: Start, listening_port: ListeningPort, tmp_path: Path, differing: str
+) -> None:
+    """Another gateway, on a clock of its own, is the robot."""
+    start("serial", "one", "two", "--baud", "115200")
+    wait_for((tmp_path / "two").is_symlink)
+    clock = ("--pace", "realtime", "-n", "0", "-m", "0", "--duration", "2", "--set", differing)
+    robot = start("gateway", "lab", *clock, "--endpoint", SERIAL.format("one"), "--out", "robot")
+    assert "waiting for" in robot.stderr.readline()
+    lab = ("lab", "--duration", "1")
+    relay = start("gateway", *lab, "--plant", SERIAL.format("two"), *HERE, "--out", "relay")
+    start("controller", *lab, *there(listening_port(relay)), "--out", "station")
+    code = 2 if differing.startswith("sample_time") else 0
+    for side in (robot, relay):
+        said = ended(side, code)
+        assert "tell its settings" not in said
+        assert differing.partition("=")[2] in said

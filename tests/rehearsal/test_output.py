@@ -86,6 +86,11 @@ def test_a_full_disk_behind_the_output_is_one_line_after_the_run(
     assert_whole(tmp_path / "run")
 
 
+def test_where_nothing_can_be_said_the_code_says_it(shell: Callable[..., Ended]) -> None:
+    laglab = (sys.executable, "-m", "laglab")
+    assert shell(">/dev/full 2>/dev/full", *laglab, "estimators").returncode == 4
+
+
 @pytest.mark.parametrize("lines", [0, 5])
 def test_a_reader_that_goes_away_does_not_end_the_run(lines: int, tmp_path: Path) -> None:
     """It reads so many pieces of what a terminal would show, the progress with it."""

@@ -181,7 +181,8 @@ def serve_remote(relay: Relay, robot: Listener, around: Surroundings) -> Served:
             if line.seems_silent:  # it may be we who were held up
                 _relay_ticks(relay, line, conversation, around)
             line.check_silence()
-        if said := line.missed_settings(0.0):
+        # A robot that refuses our pace says END, and no tick.
+        for said in filter(None, (line.compare_settings(), line.missed_settings(0.0))):
             around.warn(said)
     return served(relay)
 
