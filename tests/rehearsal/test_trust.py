@@ -40,6 +40,9 @@ def test_the_command_leaves_table_and_picture_and_computes_nothing_twice(
     assert "9 of 10 runs had been made before, and are in studies/trust/cells" in said
     assert [each.stat().st_mtime_ns for each in cells][1:] == times[1:]
     assert cells[0].exists()
+    code, _, said = ended("run", "fig6", "--duration", "0.1", "--out", "studies/trust")
+    assert code == 2
+    assert "a study's results are there: take another folder" in said
 
 
 def only_cell(condition: str, station: str, seeds: int = 1) -> Cell:

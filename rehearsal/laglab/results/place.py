@@ -9,7 +9,7 @@ from laglab.errors import PlaceError
 from laglab.files import folder_place
 from laglab.results.figures import FIGURE_FILE
 from laglab.results.run import SCENARIO_FILE
-from laglab.results.summary import STUDY_FILE, SUMMARY_FILE
+from laglab.results.summary import STUDY_CELLS, STUDY_FILE, SUMMARY_FILE
 from laglab.scenario import Scenario
 from laglab_gateway import ROWS, TLOG_FILE, TRACE_FILE
 
@@ -27,7 +27,7 @@ def place(scenario: Scenario, out: Path | None, force: bool = False, suffix: str
         directory = fresh(Path("runs"), re.sub(r"[^\w.-]", "-", scenario.name + suffix))
     else:
         directory = folder_place("--out", out)
-        if (directory / STUDY_FILE).exists():
+        if (directory / STUDY_FILE).exists() or (directory / STUDY_CELLS).is_dir():
             raise PlaceError(f"--out {out}: a study's results are there: take another folder")
         if not force and (taken := [name for name in OURS if (directory / name).exists()]):
             raise PlaceError(

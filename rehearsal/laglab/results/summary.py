@@ -13,6 +13,8 @@ from laglab_station import StationReport
 
 SUMMARY_FILE = "summary.json"
 STUDY_FILE = "study.toml"
+STUDY_CELLS = "cells"
+"""The folder of the tables of a study's cells; of `laglab trust` there is no more."""
 """What a study's folder has instead."""
 SCHEMA_VERSION = 4
 

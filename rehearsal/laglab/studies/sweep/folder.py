@@ -17,13 +17,12 @@ import pyarrow.parquet as pq
 
 from laglab.errors import NoRunError, PlaceError
 from laglab.files import BESIDE, folder_place, write_whole
-from laglab.results.summary import STUDY_FILE, SUMMARY_FILE
+from laglab.results.summary import STUDY_CELLS, STUDY_FILE, SUMMARY_FILE
 from laglab.studies.sweep.cells.cell import Cell
 from laglab.studies.sweep.cells.compute import DESCRIPTION
 from laglab.studies.sweep.loading import study_of, to_toml
 from laglab.studies.sweep.study import Study
 
-CELLS = "cells"
 ABANDONED = 3600.0
 """[s] A file half written longer ago than this nobody will finish."""
 
@@ -59,7 +58,7 @@ class Folder:
     @property
     def cells(self) -> Path:
         """The folder of their files."""
-        return self.path / CELLS
+        return self.path / STUDY_CELLS
 
     @property
     def _study(self) -> Path:
