@@ -1,8 +1,10 @@
 """``laglab trust``."""
 
+from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from itertools import chain
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -29,6 +31,11 @@ from laglab.studies.trust import (
 )
 from laglab.tables import say, terminal
 from laglab_control import ESTIMATORS
+
+if TYPE_CHECKING:
+    from laglab.studies.sweep.study import Study
+    from laglab.studies.trust import Pair, Scores
+    from laglab.studies.workers import Executor
 
 
 def trust(
@@ -59,24 +66,30 @@ def trust(
     """
     require(REHEARSING)
     require(STUDYING)
+    picture_place(out)
+    conditions = chosen("--only", only, CONDITIONS)
+    compared = stations(checked("--estimator", known_estimator, estimator))
+    tried = studies(conditions, compared, seeds)
+    got = _tried(tried, keep, executor_of(scheduler, workers))
+    terminal().print(trust_table(got, list(compared), seeds))
+    save(draw_trust(got, list(compared)), out)
+    print(f"picture in {out}")
+
+
+def _tried(
+    of: "Mapping[Pair, Study]", keep: Path, workers: "AbstractContextManager[Executor]"
+) -> "Scores":
+    """What became of every study, in their folder; what is there already is not made again."""
     from laglab.studies.sweep.folder import Folder
     from laglab.studies.sweep.sweeping import work_off
     from laglab.studies.sweep.work import work_left
 
-    picture_place(out)
-    conditions = chosen("--only", only, CONDITIONS)
-    compared = stations(checked("--estimator", known_estimator, estimator))
-    executor = executor_of(scheduler, workers)
-    tried = studies(conditions, compared, seeds)
+    work = work_left(*of.values(), folder=Folder(keep))
     folder = Folder.of_cells(keep, "--keep")
-    work = work_left(*tried.values(), folder=folder)
-    cells = list(chain.from_iterable(study.cells() for study in tried.values()))
-    runs = sum(study.runs for study in tried.values())
+    cells = list(chain.from_iterable(study.cells() for study in of.values()))
+    runs = sum(study.runs for study in of.values())
     with kept_when_interrupted(runs, lambda: folder.runs(cells)):
-        work_off("trust", cells, folder, executor, work)
+        work_off("trust", cells, folder, workers, work)
     if made := runs - work.runs:
         say(f"{made} of {runs} runs had been made before, and are in {folder.cells}")
-    got = {pair: score(folder.table_of(study.cells())) for pair, study in tried.items()}
-    terminal().print(trust_table(got, list(compared), seeds))
-    save(draw_trust(got, list(compared)), out)
-    print(f"picture in {out}")
+    return {pair: score(folder.table_of(study.cells())) for pair, study in of.items()}

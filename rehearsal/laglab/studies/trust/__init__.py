@@ -1,11 +1,13 @@
 """How far each station can be trusted."""
 
-from laglab.studies.trust.report import draw_trust, score, trust_table
-from laglab.studies.trust.trials import CONDITIONS, DEFAULT, stations, studies
+from laglab.studies.trust.report import Scores, draw_trust, score, trust_table
+from laglab.studies.trust.trials import CONDITIONS, DEFAULT, Pair, stations, studies
 
 __all__ = [
     "CONDITIONS",
     "DEFAULT",
+    "Pair",
+    "Scores",
     "draw_trust",
     "score",
     "stations",
