@@ -102,6 +102,7 @@ def gateway(
         way = Way("robot", link.name, plant or scenario.plant.called)
         page = stack.enter_context(shown_live(scenario, way, live, open_))
         directory = place(scenario, out, force)
+        stack.enter_context(withdrawn_unless_begun(directory))
         if said := wrapped_replay(scenario):
             say(said)
         _say_whom_we_wait_for("the controller", link)
@@ -109,7 +110,6 @@ def gateway(
             say(f"a ground station may look on at {each.name}")
         line = page.line if page else None
         with (
-            withdrawn_unless_begun(directory),
             progress_of(scenario) as told,
             fed(FileRecorder(directory), line, robot.controls) as files,
         ):
@@ -148,10 +148,12 @@ def controller(
         require(SEEING)
     with open_endpoint(endpoint) as link, open_station(scenario, key) as (station, receiver):
         way = Way("station", link.name, "unknown")
-        with shown_live(scenario, way, live, open_) as page:
+        with ExitStack() as stack:
+            page = stack.enter_context(shown_live(scenario, way, live, open_))
             directory = place(scenario, out, force, suffix="-station")
+            stack.enter_context(withdrawn_unless_begun(directory))
             _say_whom_we_wait_for("the robot", link)
-            with withdrawn_unless_begun(directory), progress_of(scenario) as told:
+            with progress_of(scenario) as told:
                 glance = StationGlance(scenario) if scenario.pace == "realtime" else None
                 clock = LoopClock(lambda tick: told(tick, glance.now() if glance else None))
                 record = StationRecord(directory, scenario.sample_time, _warn, clock, glance)
