@@ -6,6 +6,7 @@ from time import monotonic, sleep
 
 from laglab_protocol import (
     ROBOT,
+    TELLS_WITHIN,
     UNANNOUNCED,
     End,
     EndpointError,
@@ -25,9 +26,6 @@ HEARTBEAT_PERIOD = 0.1
 
 CALL_AGAIN = 0.5
 """[s] A robot that says nothing for so long may have begun again, and wait for a heartbeat."""
-
-TELLS_WITHIN = 1.0
-"""[s] Of its first tick a robot may still say what it was told: on a stream all comes in pieces."""
 
 IN_FORCE = 1.0
 """[s] Heard so lately, a robot keeps its station: nobody at another address takes its place."""

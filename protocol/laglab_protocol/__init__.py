@@ -125,7 +125,7 @@ from laglab_protocol.playout import Playout
 from laglab_protocol.ration import LEAST_BYTES, Ration
 from laglab_protocol.refusals import Refusals
 from laglab_protocol.restart import Restart
-from laglab_protocol.settings import Parties, differences, refuse_other_sample_time
+from laglab_protocol.settings import TELLS_WITHIN, Parties, differences, refuse_other_sample_time
 from laglab_protocol.signing.keys import Codec, make_key, read_key, refuse_open_door
 from laglab_protocol.signing.signature import EVERY_MESSAGE, Signer, Verifier, signing_time
 from laglab_protocol.timing import Durations, Quantiles
@@ -154,6 +154,7 @@ __all__ = [
     "STATION_COMPONENT",
     "STATION_HEARTBEAT",
     "STATION_SYSTEM",
+    "TELLS_WITHIN",
     "UNANNOUNCED",
     "UNKNOWN_DELAY",
     "Address",

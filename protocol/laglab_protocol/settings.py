@@ -6,6 +6,9 @@ from typing import NamedTuple
 from laglab_protocol.errors import SettingsError
 from laglab_protocol.messages.loop import UNKNOWN_DELAY, Settings
 
+TELLS_WITHIN = 1.0
+"""[s] Of its first tick a robot may still say what it was told: on a stream all comes in pieces."""
+
 
 class Setting(NamedTuple):
     """One field of LAGLAB_SETTINGS, for people."""

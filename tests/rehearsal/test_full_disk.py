@@ -46,10 +46,16 @@ class SmallDisk:
 
     def start(self, *arguments: str, size: int = 150) -> "subprocess.Popen[str]":
         program = (sys.executable, "-m", "laglab", *arguments, "--out", "small/run")
+        return self._started(size, *program)
+
+    def _started(self, size: int, *program: str) -> "subprocess.Popen[str]":
         mounted = may_mount()
         script = (MOUNTED if mounted else LIMITED).format(size=size) + AND_KEEP
         namespace = ("unshare", "-rm") if mounted else ()
         return self._start(*namespace, "sh", "-c", script, "sh", *program)
+
+    def in_python(self, script: str) -> "subprocess.Popen[str]":
+        return self._started(150, sys.executable, "-c", script)
 
     def assert_whole(self) -> None:
         run = self.kept / "run"
@@ -88,6 +94,21 @@ def test_of_a_whole_run(small_disk: SmallDisk, transport: str) -> None:
     assert_one_line(said(run, 4), FULL)
     small_disk.assert_whole()
     assert read_trace(small_disk.kept / "run" / "trace.csv")["tick"][-1] > 100
+
+
+IN_PYTHON = """
+import laglab
+try:
+    laglab.run("lab-radio", {"duration": 30.0}, out="small/run")
+except laglab.RunError as error:
+    raise SystemExit(f"laglab: {error}")
+"""
+
+
+def test_in_python_it_is_what_broke_the_run(small_disk: SmallDisk) -> None:
+    """Not that there was no room for its summary either."""
+    assert_one_line(said(small_disk.in_python(IN_PYTHON), 1), FULL)
+    small_disk.assert_whole()
 
 
 def test_of_a_run_that_records_the_link_and_the_clock_too(small_disk: SmallDisk) -> None:

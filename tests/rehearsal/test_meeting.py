@@ -231,13 +231,19 @@ def test_an_end_ends_no_gateway_that_waits_and_no_run_that_it_is_not_of(
 SERIAL = "serial://{}:115200"
 
 
+@pytest.fixture
+def cable(start: Start, tmp_path: Path) -> None:
+    """From port `one` to port `two`."""
+    start("serial", "one", "two", "--baud", "115200")
+    wait_for((tmp_path / "two").is_symlink)
+
+
 @pytest.mark.parametrize("first", ["gateway", "controller"])
 @pytest.mark.parametrize("differing", ["sample_time=0.02", "plant.track=0.7"])
+@pytest.mark.usefixtures("cable")
 def test_on_a_line_where_all_comes_in_pieces_they_compare_before_they_begin(
     start: Start, tmp_path: Path, first: str, differing: str
 ) -> None:
-    start("serial", "one", "two", "--baud", "115200")
-    wait_for((tmp_path / "two").is_symlink)
     options = {
         "gateway": ("--endpoint", SERIAL.format("one")),
         "controller": ("--endpoint", SERIAL.format("two"), "--set", differing),
@@ -257,12 +263,11 @@ def test_on_a_line_where_all_comes_in_pieces_they_compare_before_they_begin(
 
 
 @pytest.mark.parametrize("differing", ["sample_time=0.02", "plant.track=0.7"])
+@pytest.mark.usefixtures("cable")
 def test_a_real_robot_at_the_end_of_a_line_is_compared_with_before_it_begins(
-    start: Start, listening_port: ListeningPort, tmp_path: Path, differing: str
+    start: Start, listening_port: ListeningPort, differing: str
 ) -> None:
     """Another gateway, on a clock of its own, is the robot."""
-    start("serial", "one", "two", "--baud", "115200")
-    wait_for((tmp_path / "two").is_symlink)
     clock = ("--pace", "realtime", "-n", "0", "-m", "0", "--duration", "2", "--set", differing)
     robot = start("gateway", "lab", *clock, "--endpoint", SERIAL.format("one"), "--out", "robot")
     assert "waiting for" in robot.stderr.readline()

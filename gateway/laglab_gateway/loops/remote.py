@@ -12,6 +12,7 @@ from laglab_gateway.loops.surroundings import Patience, Served, Surroundings, se
 from laglab_gateway.relay import Relay
 from laglab_gateway.speakers import from_robot
 from laglab_protocol import (
+    TELLS_WITHIN,
     EndpointError,
     EndReason,
     Frame,
@@ -22,9 +23,6 @@ from laglab_protocol import (
     differences,
     refuse_other_sample_time,
 )
-
-TELLS_WITHIN = 1.0
-"""[s] Of its first tick a robot may still say what it was told: on a stream all comes in pieces."""
 
 GREETED_AGAIN = 0.3
 """[s] A robot that says nothing for so long may have begun again, and wait to be greeted."""

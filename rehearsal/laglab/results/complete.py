@@ -13,13 +13,7 @@ from laglab.errors import RefusedError, RunError, UndrawableError
 from laglab.results.columns import Columns, columns_of
 from laglab.results.digest import Digest, digest, followed
 from laglab.results.figures import save_figure
-from laglab.results.numbers import (
-    goal_errors,
-    has_converged,
-    is_measured,
-    off_in_the_end,
-    robot_pose,
-)
+from laglab.results.numbers import goal_errors, has_converged, off_in_the_end
 from laglab.results.place import withdraw
 from laglab.results.run import Kept, Run
 from laglab.results.shadows import (
@@ -80,7 +74,7 @@ def complete(
         numbers = digest(trace_pieces(directory / TRACE_FILE), scenario.link.m)
     except TraceError as error:
         why = nothing_recorded(ending, str(error))
-        if isinstance(why, RefusedError | KeyboardInterrupt):
+        if isinstance(why, RefusedError):
             withdraw(directory)
         raise why from None
     failed: list[str] = []
@@ -213,10 +207,7 @@ def _after_alarms(station: StationReport | None) -> str:
 def _final(end: Trace, wanted: NDArray[np.float64]) -> Final:
     """At the last tick; of what is told later or not at all, the last that is known. A pose that is
     measured is that of the last second, by which it is judged."""
-    if is_measured(end):
-        rho, theta_error = goal_errors(off_in_the_end(end, wanted), (0.0, 0.0, 0.0))
-    else:
-        rho, theta_error = goal_errors(robot_pose(end), wanted)
+    rho, theta_error = goal_errors(off_in_the_end(end, wanted), (0.0, 0.0, 0.0))
     numbers = _last(rho), _last(theta_error), _last(end["v"]), _last(end["omega"])
     return Final(*(float(number) if abs(number) < float("inf") else None for number in numbers))
 

@@ -13,9 +13,9 @@ from laglab_station import StationReport
 
 SUMMARY_FILE = "summary.json"
 STUDY_FILE = "study.toml"
+"""What a study's folder has instead."""
 STUDY_CELLS = "cells"
 """The folder of the tables of a study's cells; of `laglab trust` there is no more."""
-"""What a study's folder has instead."""
 SCHEMA_VERSION = 4
 
 Side = Literal["both", "robot", "station"]

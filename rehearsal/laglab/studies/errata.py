@@ -49,27 +49,24 @@ class Cost(NamedTuple):
     seeds: int
 
 
-class Job(Struct, frozen=True):
+class Costing(Struct, frozen=True):
     """A variant to be tried."""
 
     scenario: str
     """As TOML."""
-    variant: int
-    """Its place among VARIANTS."""
+    variant: Variant
     seeds: int
 
 
 def costs(scenario: Scenario, seeds: int, workers: int) -> Iterator[tuple[Variant, Cost]]:
     """Every variant in the loop of the scenario, as they are done. Raises RunError."""
-    jobs = [Job(scenario.to_toml(), number, seeds) for number in range(len(VARIANTS))]
-    for number, of_it in shared_out(tried, jobs, workers):
-        yield VARIANTS[number], of_it
+    jobs = [Costing(scenario.to_toml(), variant, seeds) for variant in VARIANTS]
+    return shared_out(tried, jobs, workers)
 
 
-def tried(job: Job) -> tuple[int, Cost]:
-    """In a worker: one variant, by its place."""
-    scenario = Scenario.from_toml(job.scenario)
-    return job.variant, cost(scenario, VARIANTS[job.variant], job.seeds)
+def tried(job: Costing) -> tuple[Variant, Cost]:
+    """In a worker: one variant."""
+    return job.variant, cost(Scenario.from_toml(job.scenario), job.variant, job.seeds)
 
 
 def cost(scenario: Scenario, variant: Variant, seeds: int) -> Cost:

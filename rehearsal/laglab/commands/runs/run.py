@@ -67,10 +67,11 @@ def run(
     way = Way("both", transport, plant or scenario.plant.called)
     with shown_live(scenario, way, live, open_) as page:
         directory = place(scenario, out, force)
-        with withdrawn_unless_begun(directory), progress_of(scenario) as told:
-            setup = replace(setup, live=page.line if page else None)
-            ending = run_into(directory, scenario, transport, told, setup)
-        conclude(scenario, way, ending, directory, report, page)
+        with withdrawn_unless_begun(directory):
+            with progress_of(scenario) as told:
+                setup = replace(setup, live=page.line if page else None)
+                ending = run_into(directory, scenario, transport, told, setup)
+            conclude(scenario, way, ending, directory, report, page)
 
 
 def _parts(scenario: Scenario) -> str:

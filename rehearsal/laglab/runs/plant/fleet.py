@@ -13,4 +13,4 @@ def fleet_parameters(scenario: Scenario) -> ShippedParameters:
         return robot_parameters(scenario)
     _, told = wired(scenario)
     start = zip(told.start.values(), start_values(told, scenario, scenario.start), strict=True)
-    return OtherParameters(plant.kind.capitalize(), {**told.parameters, **dict(start)})
+    return OtherParameters(plant.model, {**told.parameters, **dict(start)})

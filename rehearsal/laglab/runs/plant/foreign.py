@@ -89,7 +89,7 @@ def wired(scenario: Scenario) -> tuple[Path, Wiring]:
         {**start, "seed": "seed"},
         {**_of_the_scenario(scenario), **plant.parameters},
     )
-    return fmu_path(plant.fmi, plant.kind.capitalize()), own
+    return fmu_path(plant.fmi, plant.model), own
 
 
 def _of_the_scenario(scenario: Scenario) -> dict[str, float]:

@@ -233,6 +233,11 @@ class PlantTable(Table):
         return self.fmu is None and self.kind in SHIPPED
 
     @property
+    def model(self) -> str:
+        """Of one of ours: the name of its FMUs, without the version of FMI."""
+        return self.kind.capitalize()
+
+    @property
     def called(self) -> str:
         """Its name, for messages."""
         return self.fmu.name if self.fmu is not None else self.kind

@@ -87,7 +87,7 @@ def chi_square_bounds(seeds: int) -> tuple[float, float]:
     return low, high
 
 
-class Running:
+class _Running:
     """The mean of what is known of arrays that come one after the other; of a shorter one the rest
     is not known."""
 
@@ -97,8 +97,7 @@ class Running:
     def add(self, values: Array) -> None:
         """The next."""
         there = ~np.isnan(values)
-        with np.errstate(over="ignore"):
-            self._sum[: len(values)] += np.where(there, values, 0.0)
+        self._sum[: len(values)] += np.where(there, values, 0.0)
         self._known[: len(values)] += there
 
     @property
@@ -115,17 +114,14 @@ class _Sums:
         """`last_tick`: of a run where nothing diverges."""
         self._estimator, self._delay = estimator, measurement_delay
         self._ticks = ticks = last_tick + 1 - measurement_delay
-        self._nees, self._nis, self._nees_ahead = (Running(ticks) for _ in range(3))
-        self._variances, self._squares = Running(ticks, DEGREES), Running(ticks, DEGREES)
+        self._nees, self._nis, self._nees_ahead = (_Running(ticks) for _ in range(3))
+        self._variances, self._squares = _Running(ticks, DEGREES), _Running(ticks, DEGREES)
         self._of_runs: list[float] = []
         self._alive = self._indefinite = self._diverged = 0
 
+    @np.errstate(over="ignore")  # of a filter that diverges
     def add(self, sample: Sample) -> None:
         """The next seed."""
-        with np.errstate(over="ignore"):  # of a filter that diverges
-            self._add(sample)
-
-    def _add(self, sample: Sample) -> None:
         error, variances, nees, nis, nees_ahead = (each[self._delay :] for each in sample)
         self._nees.add(nees)
         self._nis.add(nis)
@@ -158,8 +154,8 @@ def consistencies(
     names: Sequence[str], seeds: Iterable[Mapping[str, Sample]], last_tick: int, m: int
 ) -> list[Consistency]:
     """On the filters of these names, of all seeds; `last_tick`: of a run where nothing diverges."""
-    tallies = {name: _Sums(name, last_tick, m) for name in names}
+    sums = {name: _Sums(name, last_tick, m) for name in names}
     for samples in seeds:
-        for name, tally in tallies.items():
-            tally.add(samples[name])
-    return [tally.consistency() for tally in tallies.values()]
+        for name, of_one in sums.items():
+            of_one.add(samples[name])
+    return [of_one.consistency() for of_one in sums.values()]

@@ -106,13 +106,13 @@ def _are_common(scenario: Scenario) -> bool:
     if not (plant.ships and plant.parameters):
         return True
     sample_time = plant.parameters.get("sample_time", scenario.sample_time)
-    return sample_time == scenario.sample_time and _is_told(plant.kind, plant.parameters)
+    return sample_time == scenario.sample_time and _is_told(plant.model, plant.parameters)
 
 
-def _is_told(kind: str, named: Mapping[str, object]) -> bool:
+def _is_told(model: str, named: Mapping[str, object]) -> bool:
     """Whether a fleet of that robot can be told them; which values it takes it says itself."""
     try:
-        OtherParameters(kind.capitalize(), named).by_name()
+        OtherParameters(model, named).by_name()
     except CallError:
         return False
     return True

@@ -1,8 +1,6 @@
 """What a study asks for: known, and checked, before anything runs."""
 
 from collections import Counter
-from collections.abc import Iterator
-from itertools import chain
 from typing import TYPE_CHECKING, NamedTuple
 
 from pydantic import ValidationError
@@ -21,8 +19,6 @@ if TYPE_CHECKING:
 
 MOST_RUNS = 1_000_000
 """More than that are run only when somebody says that they are meant."""
-
-
 PARTS = {"plant", "estimator", "law", "sample_time"}
 """Of a scenario what somebody may have brought, and is tried once, before anything runs."""
 
@@ -47,20 +43,17 @@ def work_left(*studies: Study, folder: "Folder | None" = None) -> Work:
     ways: Counter[How] = Counter()
     cost = 0.0
     tried = set[str]()
-    for study, cell in chain.from_iterable(map(_named, studies)):
-        check(study, cell)
-        parts = cell.scenario.model_dump_json(include=PARTS)
-        if parts not in tried:
-            tried.add(parts)
-            _check_parts(study, cell)
-        if folder is None or not folder.has(cell):
-            ways[how(cell)] += len(cell.seeds)
-            cost += seconds(cell)
+    for study in studies:
+        for cell in study.cells():
+            check(study, cell)
+            parts = cell.scenario.model_dump_json(include=PARTS)
+            if parts not in tried:
+                tried.add(parts)
+                _check_parts(study, cell)
+            if folder is None or not folder.has(cell):
+                ways[how(cell)] += len(cell.seeds)
+                cost += seconds(cell)
     return Work(ways, cost)
-
-
-def _named(study: Study) -> Iterator[tuple[Study, Cell]]:
-    return ((study, cell) for cell in study.cells())
 
 
 def _check_parts(study: Study, cell: Cell) -> None:
