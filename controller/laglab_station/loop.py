@@ -136,9 +136,12 @@ class _Loop:
         """Or until the run is over."""
         while not self._station.closed:
             self._tell_of_keys()
-            if self._answer(min(CALL_AGAIN, self._silence_timeout)):
+            patience = min(CALL_AGAIN, self._silence_timeout)
+            until = monotonic() + patience
+            if self._answer(patience):
                 continue
-            silence = monotonic() - self._heard
+            # Silent until then, not until now: more may have come while we were held up.
+            silence = min(monotonic(), until) - self._heard
             if silence >= self._silence_timeout:
                 return
             if silence >= CALL_AGAIN:

@@ -81,10 +81,10 @@ def test_a_port_that_breaks_while_a_robot_is_waited_for_gets_its_time_to_come_ba
     path, results = tmp_path / "robot", []
     with open_endpoint(f"pty://{path}") as robot:
         station = open_endpoint(f"serial://{path}:57600")
-        options = {"silence_timeout": 0.5}
+        options = {"silence_timeout": 2.5}
         thread = threading.Thread(target=run, args=(station, results), kwargs=options)
         thread.start()
-        time.sleep(0.8)
+        time.sleep(2.8)
     with station, open_endpoint(f"pty://{path}") as robot:
         time.sleep(0.2)
         drive(robot, Tick(0, 0), End(0, EndReason.COMPLETED))
@@ -102,7 +102,7 @@ def test_a_warning_is_passed_on_once(link):
     measured = [Measurement(0.0, 0.0, 0.0, 0.0, 0.0, 0, -1), Tick(5, 1)]
     drive(robot, Tick(0, 0), measured, Tick(6, 0), End(6, EndReason.COMPLETED))
     thread.join(5)
-    gain, no_settings = onlooker.warnings
+    no_settings, gain = sorted(onlooker.warnings)
     assert no_settings == "the robot does not tell its settings"
     assert gain.startswith("tick 5: popf's gain is")
 
@@ -110,13 +110,42 @@ def test_a_warning_is_passed_on_once(link):
 def test_a_robot_that_falls_silent_is_named_with_its_last_tick(link):
     robot, station = link
     results = []
-    thread = threading.Thread(target=run, args=(station, results), kwargs={"silence_timeout": 0.3})
+    thread = threading.Thread(target=run, args=(station, results), kwargs={"silence_timeout": 2.5})
     thread.start()
+    began = time.monotonic()
     drive(robot, Tick(0, 0), Tick(1, 0))
-    silent_since = time.monotonic()
-    thread.join(5)
-    assert 0.2 < time.monotonic() - silent_since < 2
-    assert "the robot has been silent for 0.3 s, since its tick 1" in str(results[0])
+    thread.join(20)
+    assert time.monotonic() - began > 2.5
+    assert "the robot has been silent for 2.5 s, since its tick 1" in str(results[0])
+
+
+class HeldUp(Listener):
+    """Once, between a look that finds nothing and the clock."""
+
+    met, held_up = False, threading.Event()
+
+    def listen(self, timeout):
+        frames = super().listen(timeout)
+        self.met |= bool(frames)
+        if self.met and not frames and not self.held_up.is_set():
+            self.held_up.set()
+            time.sleep(2.7)
+        return frames
+
+
+def test_who_is_held_up_does_not_take_the_robot_for_silent(link):
+    robot, endpoint = link
+    listener, results = HeldUp(endpoint, Receiver()), []
+    config = StationConfig(estimator="raw")
+    thread = threading.Thread(
+        target=lambda: results.append(run_station(Station(config), listener, 2.5))
+    )
+    thread.start()
+    drive(robot, Tick(0, 0))
+    assert listener.held_up.wait(10)
+    robot.send(Sender(1, 1).frame(End(0, EndReason.COMPLETED)))
+    thread.join(20)
+    assert results == [End(0, EndReason.COMPLETED)]
 
 
 def test_a_robot_that_leaves_when_it_hears_of_the_end_is_not_waited_for(tmp_path):
@@ -126,16 +155,14 @@ def test_a_robot_that_leaves_when_it_hears_of_the_end_is_not_waited_for(tmp_path
         station = open_endpoint(f"serial://{tmp_path / 'robot'}:57600")
         listener = Listener(station, Receiver())
         thread = threading.Thread(
-            target=lambda: results.append(run_station(Station(config), listener))
+            target=lambda: results.append(run_station(Station(config), listener, 60.0))
         )
         thread.start()
         lost = [Measurement(2000.0, 0.0, 0.0, 0.0, 0.0, 0, -1), Tick(1, 1)]
         assert any(isinstance(heard, End) for heard in drive(robot, Tick(0, 0), lost))
-    gone_since = time.monotonic()
-    thread.join(5)
+    thread.join(20)
+    assert results == [End(1, EndReason.DIVERGED)], "it waits for its port to come back"
     station.close()
-    assert results == [End(1, EndReason.DIVERGED)]
-    assert time.monotonic() - gone_since < 1.0
 
 
 @pytest.fixture

@@ -1,7 +1,6 @@
 """The conformance kit passes our own robot, over UDP and over a serial line, signed and not."""
 
 import threading
-import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
@@ -105,7 +104,8 @@ def test_a_run_that_ends_too_soon_is_told_from_a_robot_that_is_deaf(stack: ExitS
 def test_a_kit_that_is_interrupted_tells_what_it_saw_and_lets_the_robot_go(
     stack: ExitStack,
 ) -> None:
-    """The robot stands still at once, and not after its silence timeout."""
+    """The robot stands still at once, and not after its silence timeout: that would be an error in
+    its thread, which pytest takes for ours."""
     tried: list[str] = []
 
     def interrupted(text: str) -> None:
@@ -116,8 +116,6 @@ def test_a_kit_that_is_interrupted_tells_what_it_saw_and_lets_the_robot_go(
     endpoint = stack.enter_context(open_endpoint("udpin://:0"))
     with served(endpoint, None, "lockstep") as url:
         report = conform(url, "robot", None, progress=interrupted)
-        told = time.monotonic()
-    assert time.monotonic() - told < 2.0, "it would have waited for 3 s"
     marks = [each.mark for each in report.results]
     assert marks[:4] == [Mark.PASSED] * 4
     assert set(marks[4:]) == {Mark.INTERRUPTED}

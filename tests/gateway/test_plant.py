@@ -43,9 +43,11 @@ from laglab_protocol import (
     Receiver,
     Sender,
     Tick,
+    frames_in,
     open_endpoint,
     read_tlog,
 )
+from laglab_protocol.endpoints.udp import UdpIn
 
 Process = Any
 Start = Callable[..., Process]
@@ -254,10 +256,17 @@ class HeldUp(Recorder):
 
 
 def test_who_is_held_up_does_not_take_the_robot_for_silent(
-    gateway_as_robot: tuple[str, "Future[Outcome]"],
+    gateway_as_robot: tuple[str, "Future[Outcome]"], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It has gone on meanwhile, and what it said is there to be read."""
+    """It has gone on meanwhile, and what it said is there to be read, each frame a datagram."""
     address, robot = gateway_as_robot
+    together = UdpIn.send
+
+    def one_by_one(link: UdpIn, data: bytes, to: Any = None) -> None:
+        for frame in frames_in(data):
+            together(link, frame.raw, to)
+
+    monkeypatch.setattr(UdpIn, "send", one_by_one)
     services = Services(standard_parameters(1, 1, Safety()), placeable=False)
     relay, recorder = Relay(GatewayConfig(1, 1, 200, 0.01), services), HeldUp()
     with (

@@ -150,7 +150,7 @@ def test_files_are_whole_whenever_a_side_is_killed(
             if killer.ident is None:
                 killer.start()
 
-        scenario = load("lab-radio", {"duration": 3600.0, "silence_timeout": 1.0})
+        scenario = load("lab-radio", {"duration": 3600.0, "silence_timeout": 2.5})
         directory = tmp_path / str(attempt)
         ending = rehearse_apart(scenario, "udp", directory, started)
         killer.join()

@@ -71,8 +71,7 @@ def test_in_real_time_an_answer_takes_as_long_as_its_bytes(start: Start, tmp_pat
     timing = (tmp_path / "run" / "timing.csv").read_text().splitlines()[1:]
     answers = sorted(float(answer) for _, _, answer in (row.split(",") for row in timing) if answer)
     at_the_rate = (TICK_BYTES + ANSWER_BYTES) * 10 / BAUD
-    assert 0.95 * at_the_rate < answers[len(answers) // 2]
-    assert answers[len(answers) // 10] < at_the_rate + 0.01
+    assert 0.95 * at_the_rate < answers[0] < at_the_rate + 0.01
 
 
 def test_a_port_changes_hands(start: Start, laglab: Laglab, tmp_path: Path) -> None:

@@ -162,8 +162,8 @@ def test_a_flood_on_both_ports_changes_nothing(start: Start, tmp_path: Path, sig
 
 def test_neither_requests_nor_the_stations_name_end_a_run(start: Start, tmp_path: Path) -> None:
     """A datagram of requests is answered with a few short ones, on the loop's own link too; who
-    pretends to be the station is told that there is one."""
-    run = Run(start, tmp_path, *REAL_TIME)
+    pretends to be the station is told that there is one, as long as that one is in force: 3 s."""
+    run = Run(start, tmp_path, *REAL_TIME, "--silence", "9")
     with speaking(run.ports[0]) as say:
         answer = say(Sender(255, 190).frame(ParamRequestList(1, 1)) * 148)
         assert len(answer) <= 1200

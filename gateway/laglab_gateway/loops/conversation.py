@@ -8,7 +8,7 @@ from typing import NamedTuple
 from laglab_gateway.errors import StationSilentError, TraceError
 from laglab_gateway.link.log import LinkRow
 from laglab_gateway.loops.datagrams import datagrams
-from laglab_gateway.loops.surroundings import Surroundings
+from laglab_gateway.loops.surroundings import READ_ON, Surroundings
 from laglab_gateway.loops.watch import Watch
 from laglab_gateway.record.recorder import Recorder
 from laglab_gateway.record.rows import ArrivalRow, ClaimRow
@@ -240,8 +240,9 @@ class Conversation:
 
     def check_silence(self) -> None:
         """Raises StationSilentError when the station has been silent for longer than allowed."""
-        if self._seems_silent:
-            self.listen(0.0)  # it may be we who were held up
+        for _ in range(READ_ON):
+            if self._seems_silent:
+                self.listen(0.0)
         if self._seems_silent:
             raise StationSilentError(self._heard_tick, self.now() - self._heard)
 

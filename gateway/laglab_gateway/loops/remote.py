@@ -8,7 +8,7 @@ from time import monotonic
 
 from laglab_gateway.errors import PlantSilentError
 from laglab_gateway.loops.conversation import END_TRIES, Conversation
-from laglab_gateway.loops.surroundings import Patience, Served, Surroundings, served
+from laglab_gateway.loops.surroundings import READ_ON, Patience, Served, Surroundings, served
 from laglab_gateway.relay import Relay
 from laglab_gateway.speakers import from_robot
 from laglab_protocol import (
@@ -176,8 +176,9 @@ def serve_remote(relay: Relay, robot: Listener, around: Surroundings) -> Served:
             line.forward()
             for said in line.refusals():
                 around.warn(said)
-            if line.seems_silent:  # it may be we who were held up
-                _relay_ticks(relay, line, conversation, around)
+            for _ in range(READ_ON):
+                if relay.outcome is None and line.seems_silent:
+                    _relay_ticks(relay, line, conversation, around)
             line.check_silence()
         # A robot that refuses our pace says END, and no tick.
         for said in filter(None, (line.compare_settings(), line.missed_settings(0.0))):

@@ -13,6 +13,10 @@ from laglab_gateway.record.recorder import Recorder
 from laglab_gateway.side import RobotSide
 from laglab_protocol import EndReason, Listener
 
+READ_ON = 64
+"""Looks at what waits to be read, before somebody counts as silent: it may be we who were held up,
+and not all that waits tells that the other is there."""
+
 
 def unheard(_: object) -> None:
     """For what nobody asked to be told."""

@@ -66,10 +66,10 @@ class SerialPair:
         with_room = {each.source: each for each in self.lanes if each.wire.room}
         limits = [*waits, *([] if timeout is None else [timeout])]
         ready, _, _ = select.select(with_room, [], [], min(limits, default=None))
+        for lane in self.lanes:  # first: behind what crossed while we were held up the line is idle
+            lane.give_out()
         for port in ready:
             with_room[port].take_in()
-        for lane in self.lanes:
-            lane.give_out()
 
     def close(self) -> None:
         """Pull the cable: who holds a port is told that the far end is gone."""

@@ -39,7 +39,7 @@ from laglab_station import MakeController, Station, StationReport
 
 Transport = Literal["inline", "udp", "serial"]
 
-NOTICE_SECONDS = 4.0
+NOTICE_SECONDS = 8.0
 """[s] What a gateway needs, besides the silence timeout, to say that its station is silent: on a
 stream it tries for two to tell it of the end."""
 STILL_STARTING = 0.5

@@ -20,6 +20,9 @@ from laglab_protocol import (
 
 from .line import Line, begin, command
 
+SOON = 1000
+"""Ticks of the line's robot in 2.5 s: nobody is held up for longer."""
+
 
 def plan(tick: int, in_force: int, length: int) -> list[Message]:
     """Entry i is v = i/1000: the frames, and the command that they belong to."""
@@ -32,11 +35,11 @@ def test_a_plan_is_read_off_tick_by_tick_then_held_and_the_failsafe_waits_for_it
     line: Line,
 ) -> None:
     tick = begin(line).tick
-    line.say(*plan(tick + 1, tick + 600, 40))
+    line.say(*plan(tick + 1, tick + SOON, 40))
     samples = line.samples_from(tick + 1, 140)
-    assert samples[0].tick == tick + 601  # not before it is meant to be
+    assert samples[0].tick == tick + SOON + 1  # not before it is meant to be
     for sample in samples:
-        ahead = sample.tick - 1 - (tick + 600)
+        ahead = sample.tick - 1 - (tick + SOON)
         share = min(1.0, max(0.0, 1 - ((ahead - 40) * 0.01 - 0.5) / 0.5))
         assert sample.v == pytest.approx(share * min(ahead, 40) / 1000)
 
@@ -63,9 +66,10 @@ def test_it_plays_commands_out(start: Callable[..., Any], firmware: Path, tmp_pa
         heard = line.hear_until(lambda message: isinstance(message, Settings))
         (told,) = [message for message in heard if isinstance(message, Settings)]
         assert told.command_playout == 60
-        line.say(command(tick + 10, 0.1), command(tick + 12, 0.2))
-        first, *rest = line.samples_from(tick + 10, 10)
-        assert first.tick == tick + 71
-        assert rest[1].command_tick == tick + 12
+        stamp = tick + 200  # in 2 s: nobody is held up for longer
+        line.say(command(stamp, 0.1), command(stamp + 2, 0.2))
+        first, *rest = line.samples_from(stamp, 10)
+        assert first.tick == stamp + 61
+        assert rest[1].command_tick == stamp + 2
         line.say(command(rest[-1].tick - 60, 0.3))
-        assert {sample.command_tick for sample in line.samples(20)} == {tick + 12}
+        assert {sample.command_tick for sample in line.samples(20)} == {stamp + 2}

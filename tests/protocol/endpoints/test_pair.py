@@ -57,15 +57,38 @@ def read_all(endpoint: Endpoint, size: int) -> bytes:
 def test_both_ways_at_once_each_at_the_baud_rate(running: Running, stack: ExitStack) -> None:
     ends = [stack.enter_context(running.open(which)) for which in (0, 1)]
     sent = [random.Random(which).randbytes(3000) for which in (0, 1)]
-    started = time.monotonic()
-    for end, data in zip(ends, sent, strict=True):
-        end.send(data)
-    assert [read_all(ends[1], 3000), read_all(ends[0], 3000)] == sent
-    at_the_rate = 3000 * 10 / BAUD
-    took = time.monotonic() - started
-    assert 0.99 * at_the_rate < took < 1.9 * at_the_rate, "one after the other takes twice as long"
+    at_the_rate, took = 3000 * 10 / BAUD, list[float]()
+    while not took or (took[-1] >= 1.9 * at_the_rate and len(took) < 3):  # we may be held up
+        started = time.monotonic()
+        for end, data in zip(ends, sent, strict=True):
+            end.send(data)
+        assert [read_all(ends[1], 3000), read_all(ends[0], 3000)] == sent
+        took.append(time.monotonic() - started)
+    assert 0.99 * at_the_rate < min(took), "no faster than the line"
+    assert took[-1] < 1.9 * at_the_rate, "one after the other takes twice as long"
     running.close()
-    assert [way.carried for way in running.pair.lanes] == [3000, 3000]
+    assert [way.carried for way in running.pair.lanes] == [3000 * len(took)] * 2
+
+
+def test_behind_what_crossed_while_the_cable_was_held_up_the_line_is_idle(
+    tmp_path: Path, stack: ExitStack
+) -> None:
+    """What is written then has not begun to cross before."""
+    paths = [tmp_path / name for name in ("one", "two")]
+    pair = stack.enter_context(SerialPair(*map(str, paths), BAUD))
+    writer, reader = (
+        stack.enter_context(open_endpoint(f"serial://{path}:{BAUD}")) for path in paths
+    )
+    writer.send(bytes(100))
+    while not pair.lanes[0].wire.next_report():
+        pair.carry_once(0.01)
+    time.sleep(0.1)
+    started, heard = time.monotonic(), 0
+    writer.send(bytes(100))
+    while heard < 200:
+        pair.carry_once(0.01)
+        heard += len(reader.receive(0.0))
+    assert time.monotonic() - started > 0.99 * 100 * 10 / BAUD
 
 
 def test_a_writer_faster_than_the_line_has_to_wait(running: Running, stack: ExitStack) -> None:
@@ -97,7 +120,7 @@ def test_a_port_that_nobody_reads_loses_bytes_and_holds_nobody_up(
             pair.carry_once(0.01)
         if way.overrun:
             carried.append(way.carried)
-    assert carried[0] == carried[-1] < 100_000
+    assert carried[50] == carried[-1] < 100_000  # the kernel makes some room at first, when it can
     assert way.wire.room == TRANSMIT_BUFFER
 
 

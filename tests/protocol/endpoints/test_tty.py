@@ -212,10 +212,13 @@ def test_what_nobody_reads_is_lost_and_holds_nobody_up(
 
 def test_a_pty_waits_as_long_as_told(stack: ExitStack, tmp_path: Path) -> None:
     robot = stack.enter_context(open_endpoint(f"pty://{tmp_path / 'robot'}"))
-    started = time.monotonic()
+    took = []
+    for _ in range(3):  # we may be held up once
+        started = time.monotonic()
+        assert robot.receive(0.05) == b""
+        took.append(time.monotonic() - started)
 
-    assert robot.receive(0.05) == b""
-    assert 0.049 < time.monotonic() - started < 0.5
+    assert 0.049 < min(took) < 0.5
 
 
 @pytest.mark.parametrize("vmin", [0, 1])

@@ -89,7 +89,8 @@ def test_beside_a_peer_strangers_are_rationed(stack: ExitStack) -> None:
     stranger = stack.enter_context(open_endpoint(station.name))
     for _ in range(20):
         stranger.send(bytes(1400))
-    began, heard = time.monotonic(), 0
+    began = time.monotonic()
+    heard = len(robot.receive(0.01))
     while time.monotonic() < began + 0.3:
         heard += len(robot.receive(0.01))
     seconds = time.monotonic() - began
@@ -134,9 +135,12 @@ def test_udpout_before_anybody_listens(stack: ExitStack) -> None:
 def test_udp_waits_as_long_as_told(stack: ExitStack, timeout: float) -> None:
     robot, station = udp_pair(stack)
     for endpoint in (robot, station):
-        started = time.monotonic()
-        assert endpoint.receive(timeout) == b""
-        assert timeout <= time.monotonic() - started + 0.001 < timeout + 0.5
+        took = []
+        for _ in range(3):  # we may be held up once
+            started = time.monotonic()
+            assert endpoint.receive(timeout) == b""
+            took.append(time.monotonic() - started)
+        assert timeout <= min(took) + 0.001 < timeout + 0.5
 
 
 def test_udpin_binds_loopback_unless_told_otherwise(stack: ExitStack) -> None:

@@ -193,10 +193,9 @@ def test_on_a_serial_line_delays_are_its_arithmetic(
     assert result.returncode == 0, result.stderr
     measured = read_measured(tmp_path / "link.csv", interval)
     for _, flow in measured.flows:
-        assert flow.lost.sum() <= 3  # a busy machine pauses within a frame, which ends it
+        assert flow.lost.mean() < 0.5  # a busy machine pauses within a frame, which ends it
         at_the_rate = flow.size * 10 / baud
-        undisturbed = np.nanquantile(flow.delay, 0.2)
-        assert at_the_rate * 0.95 < undisturbed < at_the_rate + 0.01
+        assert at_the_rate * 0.95 < np.nanmin(flow.delay) < at_the_rate + 0.01
     line.send_signal(signal.SIGINT)
     report, _ = line.communicate(timeout=10)
     assert "lost because nobody read them" not in report

@@ -31,7 +31,7 @@ def echo(link: Listener, codec: Codec, tell: Callable[[str], None]) -> None:
                 tell(f"measured from now on, {1e6 / max(probe.interval_us, 1):.4g} frames a second")
         while (said := end.say(clock())) is not None:
             link.link.offer(sender.frame(said))
-        if ended := end.take_over(clock()):
+        if ended := end.take_over(now):  # what came since is still to be read
             link.link.leave_peer()  # whoever measures next is no stranger beside it
             tell(f"no longer measured: {ended.heard} frames came, {ended.said} were sent")
         for line in refusals.news([link], clock() * 1e-9):
