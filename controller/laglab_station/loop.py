@@ -15,6 +15,7 @@ from laglab_protocol import (
     Frame,
     Listener,
     Refusals,
+    Settings,
     differences,
     refuse_other_sample_time,
 )
@@ -95,7 +96,9 @@ class _Loop:
         self._took = 0.0
         """[s] For the last answer, and what was done after it."""
         self._called = -HEARTBEAT_PERIOD
-        self._compared = False
+        self._compared: Settings | None = None
+        self._heard_again = False
+        """Whether who is in force has said more than one thing: one alone may be astray."""
         self._met: float | None = None
         """When its first tick had come."""
         self._refusals = Refusals(self._heard)
@@ -194,11 +197,20 @@ class _Loop:
         if not frames:
             return []
         if link.sender != link.peer:
-            if link.peer is not None and now - self._heard < IN_FORCE:
+            if link.peer is not None and self._heard_again and now - self._heard < IN_FORCE:
                 return []
-            link.accept_peer()  # who knocks is to hear our heartbeats
+            self._accept_peer(now)
+        else:
+            self._heard_again = True
         self._heard = now
         return frames
+
+    def _accept_peer(self, now: float) -> None:
+        """Who knocks is to hear our heartbeat at once, and has time to tell its settings."""
+        self._link.accept_peer()
+        self._heard_again = False
+        self._met = self._met and now
+        self._call_every(0.0)
 
     def _reopen(self, error: FarEndGoneError) -> None:
         self._station.warn("gone", f"{error}; waiting for it to come back")
@@ -217,8 +229,8 @@ class _Loop:
     def _look_around(self) -> None:
         """Compare what both sides were told, once the robot says it; pass warnings on."""
         robot, station = self._station.robot_settings, self._station.settings
-        if robot is not None and not self._compared:
-            self._compared = True
+        if robot is not None and robot is not self._compared:
+            self._compared = robot
             refuse_other_sample_time(robot, station)
             if said := differences(robot, station):
                 self._station.warn("settings", f"the two sides were told different things: {said}")
@@ -232,7 +244,7 @@ class _Loop:
 
     def _miss_settings(self, patience: float) -> None:
         """When the robot has not told them so long [s] after its first tick."""
-        if self._compared or self._station.tick is None or self._met is None:
+        if self._compared or not self._heard_again or self._met is None:
             return
         if monotonic() - self._met >= patience:
             self._station.warn("no settings", "the robot does not tell its settings")

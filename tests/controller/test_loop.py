@@ -8,14 +8,18 @@ import pytest
 
 from laglab_control import StationConfig
 from laglab_protocol import (
+    STATION_HEARTBEAT,
     Command,
     End,
     EndReason,
+    Heartbeat,
     Listener,
     Measurement,
     Receiver,
     Sender,
+    Settings,
     Tick,
+    frames_in,
     open_endpoint,
 )
 from laglab_station import Onlooker, RobotSilentError, Station, run_station
@@ -167,29 +171,28 @@ def test_a_robot_that_leaves_when_it_hears_of_the_end_is_not_waited_for(tmp_path
 
 @pytest.fixture
 def waiting():
-    """A station that waits at an address of its own, and a call that awaits what its run gave."""
-    results = []
+    """A station that waits at an address of its own, a call that awaits what its run gave, and
+    what it warns of."""
+    results, onlooker = [], Warned()
+    options = {"silence_timeout": 3.0, "onlooker": onlooker}
     with open_endpoint("udpin://127.0.0.1:0") as endpoint:
-        thread = threading.Thread(
-            target=run, args=(endpoint, results), kwargs={"silence_timeout": 3.0}
-        )
+        thread = threading.Thread(target=run, args=(endpoint, results), kwargs=options)
         thread.start()
 
         def outcome():
             thread.join(5)
             return results
 
-        yield endpoint.name.replace("udpin", "udpout"), outcome
+        yield endpoint.name.replace("udpin", "udpout"), outcome, onlooker.warnings
         thread.join(5)
 
 
 @pytest.mark.parametrize("speaker", [(7, 1), (1, 1)])
 def test_a_tick_of_somebody_who_never_answers_locks_no_station(waiting, speaker):
     """Not even in the robot's name: when the robot comes, it is met."""
-    url, outcome = waiting
+    url, outcome, _ = waiting
     with open_endpoint(url) as stranger:
         stranger.send(Sender(*speaker).frame(Tick(5000, 0)))
-    time.sleep(IN_FORCE)
     with open_endpoint(url) as robot:
         knock, receiver = Sender(1, 1), Receiver()
         until = time.monotonic() + 5
@@ -200,3 +203,18 @@ def test_a_tick_of_somebody_who_never_answers_locks_no_station(waiting, speaker)
             assert time.monotonic() < until
         drive(robot, Tick(1, 0), End(1, EndReason.COMPLETED))
     assert outcome() == [End(1, EndReason.COMPLETED)]
+
+
+def test_a_robot_that_knocks_after_a_stray_tick_is_called_at_once(waiting):
+    """And is not blamed for what who said one thing and went has not told."""
+    url, outcome, warnings = waiting
+    with open_endpoint(url) as stranger:
+        stranger.send(Sender(1, 1).frame(Tick(0, 0)))
+        assert frames_in(stranger.receive(5.0)), "it is taken for the robot"
+    with open_endpoint(url) as robot:
+        robot.send(Sender(1, 1).frame(Heartbeat(0, 10, 0, 0, 4, 3)))
+        assert STATION_HEARTBEAT in [each.message for each in frames_in(robot.receive(IN_FORCE))]
+        settings = Settings(StationConfig().model.sample_time)
+        drive(robot, [settings, Tick(0, 0)], Tick(1, 0), End(1, EndReason.COMPLETED))
+    assert outcome() == [End(1, EndReason.COMPLETED)]
+    assert warnings == []

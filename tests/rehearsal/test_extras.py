@@ -78,6 +78,8 @@ def test_each_side_runs_where_only_what_it_needs_is_installed(
     assert "pip install 'laglab[gateway]'" in machine.refuses("gateway", "lab")
     assert "pip install 'laglab[run]'" in machine.refuses("run", "lab")
     assert "pip install 'laglab[see]'" in machine.refuses("report", "runs/lab")
+    for robot in ("robot", "car", "omni"):
+        assert "pip install 'laglab[gateway]'" in machine.refuses("check", robot)
 
     ours = [sys.executable, "-m", "laglab", "gateway", *OPTIONS, "udpin://127.0.0.1:0"]
     with ending(subprocess.Popen(ours, stderr=subprocess.PIPE, text=True)) as gateway:

@@ -4,8 +4,9 @@ from typing import Annotated
 
 import typer
 
-from laglab.check import CheckOrder, Kind, all_hold, checked_apart, findings_table
+from laglab.check import SHIPPED, CheckOrder, Kind, all_hold, checked_apart, findings_table
 from laglab.errors import ScenarioError
+from laglab.extras import STEPPING, require
 from laglab.scenario import assignment
 from laglab.tables import terminal
 
@@ -36,6 +37,8 @@ def check(
         dict(map(assignment, option or []))
     except ScenarioError as error:
         raise ScenarioError(str(error).replace("--set", "--option")) from None
+    if name in SHIPPED["plant"]:
+        require(STEPPING)
     kind, found = checked_apart(CheckOrder(name, as_, tuple(option or ())))
     terminal().print(findings_table(found), highlight=False)
     held = all_hold(found)
