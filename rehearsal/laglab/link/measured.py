@@ -72,10 +72,15 @@ class MeasuredLink:
         return ("command", self.command), ("measurement", self.measurement)
 
 
+def gaps(lost: Flags) -> list[tuple[int, int]]:
+    """Where frames were lost one after the other: from which, and before which."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], lost, [False]]))).tolist()
+    return list(zip(edges[::2], edges[1::2], strict=True))
+
+
 def bursts(lost: Flags) -> list[int]:
     """The lengths of the losses: how many frames were lost one after the other, each time."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], lost, [False]])))
-    return [int(length) for length in edges[1::2] - edges[::2]]
+    return [before - first for first, before in gaps(lost)]
 
 
 def problem_of(measured: MeasuredLink) -> str | None:

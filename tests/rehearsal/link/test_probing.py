@@ -12,7 +12,7 @@ from laglab.link.probing.clocks import ClockTimes, lowest_line
 from laglab.link.probing.ends import Echo
 from laglab.link.probing.probe import hidden_arrivals
 from laglab.link.probing.sizes import overload
-from laglab_protocol import NO_PROBE, PROBE_FILLER, Probe
+from laglab_protocol import NO_PROBE, PROBE_FILLER, PROBE_LAGS, Probe
 
 FILLER = (1,) * 7 + (0,) * (PROBE_FILLER - 7)
 
@@ -77,9 +77,16 @@ def test_every_frame_is_accounted_for_though_some_are_lost_each_way() -> None:
     assert "not known to agree" in seen.note
 
 
-def test_a_link_that_dies_ends_the_measurement() -> None:
-    seen = crossed(300, lambda i: 1_000_000 if i < 200 else None, lambda _: 1_000_000)
-    assert np.isnan(seen.ours).nonzero()[0].tolist() == list(range(200, 300))
+@pytest.mark.parametrize("count", [300, 900], ids=["near its end", "long before"])
+@pytest.mark.parametrize("back", [200, 900], ids=["the far end", "the way there"])
+def test_a_link_that_dies_ends_the_measurement(count: int, back: int) -> None:
+    seen = crossed(
+        count,
+        lambda i: 1_000_000 if i < 200 else None,
+        lambda i: 1_000_000 if i < back else None,
+    )
+    assert np.isnan(seen.ours).nonzero()[0].tolist() == list(range(200, count))
+    assert hidden_arrivals(seen) == 0, "nobody was there"
 
 
 def test_clocks_that_drift_are_taken_apart() -> None:
@@ -185,3 +192,17 @@ def test_arrivals_of_which_nothing_tells_are_estimated() -> None:
     assert hidden > 10
     assert hidden_arrivals(seen) == pytest.approx(hidden, rel=0.5)
     assert hidden_arrivals(Clocks(np.zeros(9), np.zeros(9), "")) == 0
+    assert hidden_arrivals(Clocks(np.full(9, np.nan), np.zeros(0), "")) == 0
+
+
+def test_losses_each_by_itself_are_told_of_as_if_there_had_been_no_silence() -> None:
+    rng = np.random.default_rng(3)
+    came = np.where(rng.random(4000) < 0.3, np.nan, 0.01)
+    came[-1] = 0.01
+    lost = np.isnan(came).mean() ** 3
+    steady = hidden_arrivals(Clocks(np.zeros(4000), came, ""))
+    assert steady == pytest.approx(4000 * lost / (1 - lost))
+    silence = np.full(PROBE_LAGS[-1] + 1, np.nan)
+    interrupted = np.concatenate([[0.01], came[:2000], [0.01], silence, [0.01], came[2000:]])
+    seen = Clocks(np.where(np.isnan(interrupted), np.nan, 0.01), interrupted, "")
+    assert hidden_arrivals(seen) == pytest.approx(0.7 * steady, rel=0.02)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from laglab.link.errors import LinkPlaceError, NobodyAnswersError
-from laglab.link.measured import Flow, MeasuredLink, bursts
+from laglab.link.measured import Flags, Flow, MeasuredLink, bursts, gaps
 from laglab.link.probing.clock import WallClock
 from laglab.link.probing.clocks import Clocks, seen_by_clocks
 from laglab.link.probing.ends import SESSIONS, Prober, following
@@ -137,7 +137,20 @@ def _measured(prober: Prober, plan: ProbePlan, sizes: Sizes) -> MeasuredLink:
 
 def hidden_arrivals(clocks: Clocks) -> float:
     """How many commands probably came though no report of them did, if each frame is lost by
-    itself."""
-    lost = float(np.isnan(clocks.theirs).mean()) ** len(PROBE_LAGS)
-    told = int(np.sum(~np.isnan(clocks.ours)))
-    return told * lost / (1 - lost) if lost < 1 else 0.0
+    itself; in a silence they are not, so nothing is said of it."""
+    counts = _outside_silences(np.isnan(clocks.theirs))
+    if not counts.any():
+        return 0.0
+    lost = float(np.isnan(clocks.theirs[counts]).mean()) ** len(PROBE_LAGS)
+    told = int(np.sum(~np.isnan(clocks.ours[counts])))
+    return told * lost / (1 - lost)
+
+
+def _outside_silences(lost: Flags) -> Flags:
+    """Which frames lie in no gap that outlasts what is told again, nor in the one at the end: after
+    that nothing was heard, so it may have been as long."""
+    counts = np.ones(len(lost), dtype=bool)
+    for first, before in gaps(lost):
+        if before - first > PROBE_LAGS[-1] or before == len(lost):
+            counts[first:before] = False
+    return counts
