@@ -116,7 +116,7 @@ def probe(
     """Measure the link, into link.csv.
 
     From the station's end, to `laglab link echo` or a robot that knows it: frames of the size and
-    at the rate of a run's, both ways.
+    at the rate of a run's, both ways. Ctrl-C keeps what was measured.
     """
     if url.startswith("udpin"):
         raise LinkPlaceError(
@@ -130,7 +130,7 @@ def probe(
         open_endpoint(url) as link,
         counting("frame", link.name, count) as told,
     ):
-        measured = measure(
+        measured, cut_short = measure(
             Listener(link, codec.receiver, silence=PATIENT),
             codec,
             plan,
@@ -140,6 +140,8 @@ def probe(
     write_link_log(measured, out)
     print_measured(measured, terminal())
     print(out)
+    if cut_short:
+        raise cut_short
 
 
 @app.command("import")

@@ -1,6 +1,7 @@
 """A link is measured: the cores, in a world of numbers."""
 
 import heapq
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -30,13 +31,17 @@ def asked(session: int = 1, number: int = 0, interval_us: int = INTERVAL_US) -> 
 
 
 def crossed(
-    count: int, up: Callable[[int], int | None], down: Callable[[int], int | None]
+    count: int,
+    up: Callable[[int], int | None],
+    down: Callable[[int], int | None],
+    until: float = math.inf,
 ) -> Clocks:
-    """The two ends in a world without time: frame number i takes up(i), down(i) ns, None: lost."""
+    """The two ends in a world without time: frame number i takes up(i), down(i) ns, None: lost.
+    After `until` [ns] the measurement is cut short."""
     prober, echo = Prober(7, count, INTERVAL_US, FILLER), Echo(FILLER)
     flying: list[tuple[int, int, bool, Probe]] = []
     now, due = 0, 0
-    while not prober.is_done(now):
+    while not prober.is_done(now) and now < until:
         if now >= due:
             said = prober.say(now)
             due += INTERVAL_US * 1000
@@ -52,6 +57,8 @@ def crossed(
             if (took := down(answer.sequence)) is not None:
                 heapq.heappush(flying, (now + took, answer.sequence, False, answer))
         now += 500_000
+    if now >= until:
+        prober.cut(now)
     return seen_by_clocks(*prober.times(), None)
 
 
@@ -87,6 +94,15 @@ def test_a_link_that_dies_ends_the_measurement(count: int, back: int) -> None:
     )
     assert np.isnan(seen.ours).nonzero()[0].tolist() == list(range(200, count))
     assert hidden_arrivals(seen) == 0, "nobody was there"
+
+
+def test_what_is_under_way_when_it_is_cut_short_does_not_count_as_lost() -> None:
+    seen = crossed(600, lambda _: 30_000_000, lambda _: 20_000_000, until=2_000_000_000)
+    assert 193 <= len(seen.ours) == len(seen.theirs) < 200
+    assert not np.isnan(np.concatenate([seen.ours, seen.theirs])).any()
+    silent = crossed(600, lambda i: 1_000_000 if i < 99 else None, lambda _: 1_000_000, 2e9)
+    assert np.isnan(silent.ours).nonzero()[0].tolist() == list(range(99, len(silent.ours)))
+    assert len(silent.ours) > 195, "of those that had had their time it is known that they are lost"
 
 
 def test_clocks_that_drift_are_taken_apart() -> None:

@@ -1,5 +1,6 @@
 """The two ends of a link that is measured: what each says and keeps. No I/O, no clock."""
 
+from bisect import bisect_right
 from collections import deque
 
 import numpy as np
@@ -167,6 +168,14 @@ class Prober:
         if self.answered < self.count:  # with them reports were lost, which come again
             patience += min(PROBE_LAGS[-1] * self.end.interval_us * 1e-6, 4.0)
         return late > patience
+
+    def cut(self, now_ns: int) -> None:
+        """It is over before its time: those count that were sent so long ago that what came of them
+        would be told by now."""
+        told_after = self._round_trip + self.end.interval_us * 1000
+        self.count = bisect_right(self._sent, now_ns - told_after)
+        del self._sent[self.count :]
+        self.answered = sum(number < self.count for number in self._heard)
 
     def times(self) -> tuple[ClockTimes, ClockTimes]:
         """Of our frames, and of as many of the other end's: sent by one clock, came by the other.

@@ -12,7 +12,15 @@ from laglab.link.probing.clock import WallClock
 from laglab.link.probing.clocks import Clocks, seen_by_clocks
 from laglab.link.probing.ends import SESSIONS, Prober, following
 from laglab.link.probing.sizes import Sizes, filler_for, overload, real_sizes
-from laglab_protocol import PROBE_LAGS, ROBOT_SYSTEM, Codec, Listener, Probe, Refusals
+from laglab_protocol import (
+    PROBE_LAGS,
+    ROBOT_SYSTEM,
+    Codec,
+    EndpointError,
+    Listener,
+    Probe,
+    Refusals,
+)
 
 LEAST_ASKED = 0.02
 """[s] The shortest interval of probes before anybody has answered."""
@@ -29,6 +37,14 @@ class ProbePlan(NamedTuple):
     """[s] Within which somebody must answer."""
     within: float | None
     """[s] Within which the two clocks agree; None: that is not known."""
+
+
+class Probed(NamedTuple):
+    """What was measured of a link."""
+
+    link: MeasuredLink
+    cut_short: KeyboardInterrupt | EndpointError | None
+    """What ended it before its time."""
 
 
 class _Talk:
@@ -65,30 +81,23 @@ def probe(
     plan: ProbePlan,
     told: Callable[[Prober], None],
     tell: Callable[[str], None],
-) -> MeasuredLink:
+) -> Probed:
     """Measure the link to whoever answers there; `told` is told how it goes.
 
-    Raises NobodyAnswersError, LinkPlaceError when what answers has a rate of its own, and an
-    EndpointError when the link is gone.
+    Raises NobodyAnswersError, LinkPlaceError when what answers has a rate of its own, and before
+    anything is measured KeyboardInterrupt, and an EndpointError when the link is gone.
     """
-    sender = codec.sender
-    sizes = real_sizes(sender)
+    sizes = real_sizes(codec.sender)
     if said := overload(link.link.name, sizes, plan.interval):
         tell(f"warning: {said}")
-    filler = filler_for(sender, sizes.command)
+    filler = filler_for(codec.sender, sizes.command)
     interval_us = round(plan.interval * 1e6)
     talk = _Talk(link, codec, tell)
     session = secrets.randbelow(SESSIONS)
     _find(talk, Prober(session, 0, interval_us, filler), plan, link.link.name)
     prober = Prober(following(session), plan.frames, interval_us, filler)
-    due = talk.clock()
-    while not prober.is_done(talk.clock()):
-        talk.say(prober)
-        told(prober)
-        due += interval_us * 1000
-        for message, now in talk.hear_until(due):
-            prober.hear(message, now)
-    return _measured(prober, plan, sizes)
+    cut_short = _ask(talk, prober, told)
+    return Probed(_measured(prober, plan, sizes), cut_short)
 
 
 def _find(talk: _Talk, prober: Prober, plan: ProbePlan, name: str) -> None:
@@ -111,6 +120,26 @@ def _find(talk: _Talk, prober: Prober, plan: ProbePlan, name: str) -> None:
         f"{name}: nobody answers ({wait:g} s): start `laglab link echo` at the far end, with the "
         "same --key or none; or it is busy: it answers one `laglab link probe` at a time"
     )
+
+
+def _ask(
+    talk: _Talk, prober: Prober, told: Callable[[Prober], None]
+) -> KeyboardInterrupt | EndpointError | None:
+    """All that is to be asked; gives what cut it short after something was measured."""
+    due = talk.clock()
+    try:
+        while not prober.is_done(talk.clock()):
+            talk.say(prober)
+            told(prober)
+            due += prober.end.interval_us * 1000
+            for message, now in talk.hear_until(due):
+                prober.hear(message, now)
+    except (KeyboardInterrupt, EndpointError) as error:
+        prober.cut(talk.clock())
+        if not prober.answered:
+            raise
+        return error
+    return None
 
 
 def _measured(prober: Prober, plan: ProbePlan, sizes: Sizes) -> MeasuredLink:
