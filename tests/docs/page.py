@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 BLOCK = re.compile(r"(?:^<!-- not run: (.+?) -->\n+)?^```(\w+)\n(.*?)^```$", re.M | re.S)
-NAME = re.compile(r"# (\S+\.(?:toml|py|csv))\b")
+NAME = re.compile(r"# (\S+\.(?:toml|py|csv|txt|dist))\b")
 RUN = ("sh", "python", "toml", "csv")
-"""Blocks in other languages are output, equations and definitions."""
+"""Blocks in other languages are output, equations and definitions, unless they name a file."""
 PORT = re.compile(r"(?<=127\.0\.0\.1:)\d{4,5}\b")
 SECONDS = 120
 ROOT = Path(__file__).parents[2]
@@ -38,7 +38,8 @@ class Block(NamedTuple):
 def blocks(page: Path) -> list[Block]:
     """Those that a reader would copy."""
     found = BLOCK.findall(page.read_text(encoding="utf-8"))
-    return [Block(language, text, why or None) for why, language, text in found if language in RUN]
+    there = [Block(language, text, why or None) for why, language, text in found]
+    return [block for block in there if block.language in RUN or block.file]
 
 
 def do(page: Path, folder: Path) -> None:

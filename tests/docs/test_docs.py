@@ -182,6 +182,21 @@ def test_commands_in_the_pages_are_understood(command: str) -> None:
         found.make_context(name, spelled_out(arguments))
 
 
+RUN_ELSEWHERE = {
+    "docs/bring-your-own.md": "tests/docs/test_bring_your_own.py, beside the files of the page",
+    "docs/rivals.md": "tests/rehearsal/test_rivals.py, with fewer seeds",
+    "examples/firmware/README.md": "tests/gateway, on ports of its own",
+}
+"""Pages whose commands are indented lines, and what runs them."""
+
+
+def test_commands_that_nobody_runs_are_no_indented_lines() -> None:
+    """Which `test_blocks.py` passes over: in a block of their own they are run."""
+    loose = {named(page) for page in PAGES if re.search(r"^(?: {4,}|\t)laglab ", prose(page), re.M)}
+    assert loose == set(RUN_ELSEWHERE)
+    assert all((ROOT / by.split(",")[0]).exists() for by in RUN_ELSEWHERE.values())
+
+
 def test_every_column_of_a_run_s_files_is_documented() -> None:
     described: dict[str, set[str]] = {}
     page = (ROOT / "docs" / "reference" / "files.md").read_text("utf-8")
