@@ -68,6 +68,10 @@ def test_what_is_wrong_in_its_file_is_one_line(text: str, said: str, refused: Re
             "3150000000 runs (315 points of the grid, 10000000 seed",
         ),
         (["gains", "--limit", "3149"], "say --limit 3150"),
+        (["gains", "--set", "law.gamma=1"], "law.gamma: the study gives its runs their own"),
+        (["gains", "--set", "seed=7"], "seed: the study gives its runs their own"),
+        (["claims", "--set", "start=[1.0, 2.0, 0.0]"], "start: the study gives its runs their own"),
+        (["gains", "--scheduler", "tcp://127.0.0.1:1"], "no dask scheduler answers there"),
         (["gains", "--scheduler", ""], "--scheduler : must be `local` or tcp://HOST:PORT"),
         (["gains", "--scheduler", "tcp://127.0.0.1:9", "--workers", "2"], "says how many it has"),
         (["gains", "--out", "/dev/null"], "--out /dev/null: that is a file"),
@@ -78,6 +82,7 @@ def test_what_is_asked_for_in_vain_is_one_line(
     arguments: list[str], said: str, refused: Refused
 ) -> None:
     assert said in refused("sweep", *arguments)
+    assert not Path("studies").exists()
 
 
 def test_without_the_extra_it_says_what_to_install(

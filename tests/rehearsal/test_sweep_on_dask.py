@@ -161,4 +161,4 @@ def test_a_scheduler_that_is_not_there_is_one_line(cluster: Cluster, tmp_path: P
         _, errors = said(cluster.sweep(address), 2)
         assert errors.startswith(f"laglab: --scheduler {address}: ")
         assert len(errors.splitlines()) == 1
-    assert not list((tmp_path / "out" / "cells").iterdir())
+    assert not (tmp_path / "out").exists()

@@ -54,15 +54,16 @@ def sweep(
     from laglab.studies.sweep.sweeping import work_off
     from laglab.studies.sweep.work import checked_work
 
-    executor = executor_of(scheduler, workers)
+    workforce = executor_of(scheduler, workers)
     chosen = load_study(study, dict(map(assignment, told or [])), seeds)
     place = out or Path("studies") / chosen.name
     work = checked_work(chosen, None if force else Folder(place), limit)
-    folder = Folder.made(place, chosen)
-    for line in strangers_told(chosen, folder):
-        say(line)
-    with kept_when_interrupted(chosen.runs, lambda: folder.runs(chosen.cells())):
-        work_off(chosen.name, chosen.cells(), folder, executor, work, again=force)
+    with workforce as executor:
+        folder = Folder.made(place, chosen)
+        for line in strangers_told(chosen, folder):
+            say(line)
+        with kept_when_interrupted(chosen.runs, lambda: folder.runs(chosen.cells())):
+            work_off(chosen.name, chosen.cells(), folder, executor, work, again=force)
     said = summary(chosen, folder, work)
     terminal().print(said, highlight=False)
     if report:

@@ -1,7 +1,6 @@
 """``laglab trust``."""
 
 from collections.abc import Mapping
-from contextlib import AbstractContextManager
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -70,15 +69,14 @@ def trust(
     conditions = chosen("--only", only, CONDITIONS)
     compared = stations(checked("--estimator", known_estimator, estimator))
     tried = studies(conditions, compared, seeds)
-    got = _tried(tried, keep, executor_of(scheduler, workers))
+    with executor_of(scheduler, workers) as executor:
+        got = _tried(tried, keep, executor)
     terminal().print(trust_table(got, list(compared), seeds))
     save(draw_trust(got, list(compared)), out)
     print(f"picture in {out}")
 
 
-def _tried(
-    of: "Mapping[Pair, Study]", keep: Path, workers: "AbstractContextManager[Executor]"
-) -> "Scores":
+def _tried(of: "Mapping[Pair, Study]", keep: Path, executor: "Executor") -> "Scores":
     """What became of every study, in their folder; what is there already is not made again."""
     from laglab.studies.sweep.folder import Folder
     from laglab.studies.sweep.sweeping import work_off
@@ -89,7 +87,7 @@ def _tried(
     cells = list(chain.from_iterable(study.cells() for study in of.values()))
     runs = sum(study.runs for study in of.values())
     with kept_when_interrupted(runs, lambda: folder.runs(cells)):
-        work_off("trust", cells, folder, workers, work)
+        work_off("trust", cells, folder, executor, work)
     if made := runs - work.runs:
         say(f"{made} of {runs} runs had been made before, and are in {folder.cells}")
     return {pair: score(folder.table_of(study.cells())) for pair, study in of.items()}

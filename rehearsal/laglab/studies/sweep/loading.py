@@ -1,6 +1,6 @@
 """Studies from TOML: shipped ones, a user's, and what a folder of results says of its own."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Annotated, Any
@@ -92,6 +92,7 @@ def study_of(
 def _made(file: _File, path: Path, overrides: Overrides, seeds: int | None) -> Study:
     grid = {key: _anchored(key, values, path.parent) for key, values in _axes(file.grid)}
     chosen = file.seeds if seeds is None else seeds
+    _refuse_what_varies([*grid, "seed", *(["start"] if file.start else [])], overrides)
     return Study(
         scenario=changed(_base(file, path), overrides),
         seeds=range(1, chosen + 1) if isinstance(chosen, int) else tuple(chosen),
@@ -101,6 +102,13 @@ def _made(file: _File, path: Path, overrides: Overrides, seeds: int | None) -> S
         description=file.description,
         also=tuple(file.also),
     )
+
+
+def _refuse_what_varies(varied: Sequence[str], overrides: Overrides) -> None:
+    """What every run of a study has of its own would beat it, unheard."""
+    for key in overrides:
+        if any(key == own or key.startswith(f"{own}.") for own in varied):
+            raise StudyError(f"{key}: the study gives its runs their own: change it there")
 
 
 def _base(file: _File, path: Path) -> Scenario:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from concurrent.futures import CancelledError
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import nullcontext
 from pathlib import Path
 from tempfile import mkdtemp
 
@@ -39,8 +39,8 @@ def swept(
     else:
         folder = Folder.made(Path(out), chosen)
         result = StudyResult(chosen, folder, chosen.origin)
-    workers = Processes(0) if executor is None else nullcontext(executor)
-    work_off(chosen.name, chosen.cells(), folder, workers, work, progress)
+    with Processes(0) if executor is None else nullcontext(executor) as workers:
+        work_off(chosen.name, chosen.cells(), folder, workers, work, progress)
     return result
 
 
@@ -48,16 +48,13 @@ def work_off(
     name: str,
     cells: Iterable[Cell],
     folder: Folder,
-    workers: AbstractContextManager[Executor],
+    executor: Executor,
     work: Work,
     progress: bool = True,
     again: bool = False,
 ) -> None:
     """Do the work that is left of the cells, or all of it `again`. Raises as `compute`."""
-    with (
-        progress_of_study(name, work.runs, work.seconds, progress) as told,
-        workers as executor,
-    ):
+    with progress_of_study(name, work.runs, work.seconds, progress) as told:
         # Looked for when it is its turn: somebody else may have computed it meanwhile.
         wanted = (cell for cell in cells if again or not folder.has(cell))
         compute(name, wanted, folder, executor, told)
