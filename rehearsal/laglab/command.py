@@ -11,7 +11,8 @@ import typer
 from laglab import __version__
 from laglab.commands.group import alone, group
 from laglab.errors import LaglabError, RunError, ScenarioError
-from laglab.interrupts import INTERRUPTED, on_interrupt
+from laglab.interrupts import INTERRUPTED
+from laglab.last_resort import never_in_vain
 from laglab.live import spelled_out
 from laglab.output import guarded
 from laglab.runs.errors import CUT_SHORT, SIDE_ERRORS
@@ -108,8 +109,8 @@ def _exit_code(arguments: list[str] | None) -> int:
     try:
         asked = spelled_out(sys.argv[1:] if arguments is None else arguments)
         app = app_of(_asked_for(asked))
-        on_interrupt(signal.default_int_handler)
-        code = int(app(asked, prog_name="laglab", standalone_mode=False) or 0)
+        with never_in_vain(signal.default_int_handler):
+            code = int(app(asked, prog_name="laglab", standalone_mode=False) or 0)
     except typer.TyperException as error:
         return _say(error.format_message().replace("Value error, ", ""), error.exit_code)
     except LaglabError as error:

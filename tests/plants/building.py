@@ -21,11 +21,13 @@ ROVER = (
     *(("fail_at", "parameter"), ("nan_at", "parameter"), ("discard_at", "parameter")),
     *(("wheel.radius", "parameter"), ("wheel.base", "parameter")),
     *(("crash_at", "parameter"), ("dice", "parameter"), ("wall_at", "parameter")),
+    ("hang_at", "parameter"),
     *(("der(posX)", "local"), ("der(posY)", "local"), ("der(psi)", "local")),
 )
 """The rover's variables, in the order of their value references."""
 STARTS = {
     "wall_at": 1e9,
+    "hang_at": 1e9,
     "crash_at": 1e9,
     "wheel.radius": 0.05,
     "wheel.base": 0.6,

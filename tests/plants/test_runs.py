@@ -2,13 +2,18 @@
 
 import json
 import shutil
+import signal
+import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from laglab.command import main
+from laglab.last_resort import UNHEARD
 from laglab.runs.plant import open_plant
 from laglab.scenario import Scenario, load
 from laglab_gateway import read_trace
@@ -160,6 +165,37 @@ def test_what_fails_ends_the_run_and_leaves_the_record(
         "drive.cmd_left=2.74957, drive.cmd_right=-2.74957; the left motor is on fire at 1 s"
     )
     assert len(read_trace(tmp_path / "out" / "trace.csv")["tick"]) == 100
+
+
+@pytest.mark.slow
+def test_what_never_returns_is_named(
+    written: Scenarios, run: Callable[..., Ran], tmp_path: Path
+) -> None:
+    text = f"silence_timeout = 2.0{ROVER}parameters = {{ hang_at = 1.005 }}\n"
+    code, said = run(written(text), "--transport", "udp")
+    assert code == 4
+    assert "silent for 2 s, since its tick 100" in said
+    assert "its process does not go on: see whether rover.fmu returns from every call" in said
+    assert len(read_trace(tmp_path / "out" / "trace.csv")["tick"]) > 90
+
+
+@pytest.mark.slow
+def test_what_never_returns_is_ended_by_ctrl_c(
+    written: Scenarios, start_program: Callable[..., Any], tmp_path: Path
+) -> None:
+    """Where there is no process of its own to end; what was recorded stays."""
+    scenario = written(ROVER + "parameters = { hang_at = 1.005 }\n")
+    arguments = ("-m", "laglab", "run", str(scenario), "--transport", "inline", "--out", "out")
+    process = start_program(sys.executable, *arguments)
+    trace = tmp_path / "out" / "trace.csv"
+    while not (trace.exists() and trace.read_bytes().count(b"\n") > 90):
+        time.sleep(0.1)
+    time.sleep(0.5)
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=UNHEARD + 20)
+    assert process.returncode == 130
+    assert errors.splitlines()[-1] == "laglab: interrupted"
+    assert len(read_trace(trace)["tick"]) > 90
 
 
 @pytest.mark.parametrize(

@@ -194,11 +194,19 @@ class _Rehearsal:
             late = deadline is not None and monotonic() > deadline
             match self._next_letter(0.0 if late else LOOK_UP):
                 case None if late:
-                    return
+                    self._give_up()
+                    break
                 case sender, report if sender is self._gateway:
                     self._take_of_gateway(report)
                 case _, report:
                     self._take_of_station(report)
+
+    def _give_up(self) -> None:
+        """A side that is told of its far end's end, and says nothing of it."""
+        if not self._over:
+            called = self._scenario.plant.called
+            said = f"its process does not go on: see whether {called} returns from every call"
+            self._fail(said, begun=True)
 
     def _take_of_gateway(self, report: object) -> None:
         ending = self._ending

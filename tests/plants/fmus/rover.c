@@ -28,6 +28,7 @@ enum {
     CRASH_AT,
     DICE,
     WALL_AT,
+    HANG_AT,
     DER_X,
     DER_Y,
     DER_PSI,
@@ -46,7 +47,7 @@ typedef struct {
 static void begin(Rover *rover) {
     memset(rover->value, 0, sizeof rover->value);
     rover->value[FAIL_AT] = rover->value[NAN_AT] = rover->value[DISCARD_AT] = rover->value[CRASH_AT] = 1e9;
-    rover->value[WALL_AT] = 1e9;
+    rover->value[WALL_AT] = rover->value[HANG_AT] = 1e9;
     rover->stuck = false;
     rover->value[RADIUS] = 0.05;
     rover->value[BASE] = 0.6;
@@ -160,6 +161,8 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
     const double end = time + step;
     if (end > rover->value[CRASH_AT]) {
         abort();
+    }
+    for (volatile bool hangs = end > rover->value[HANG_AT]; hangs;) {
     }
     if (end > rover->value[DISCARD_AT]) {
         return fmi2Discard;
