@@ -7,12 +7,20 @@ import pyarrow as pa
 import pytest
 
 import laglab
+from laglab.studies.consistency import chi_square_bounds
 from laglab.studies.judged import ALARMS, judged_run
 from laglab.studies.sweep.cells.cell import Cell
 from laglab.studies.sweep.cells.compute import computed
 from laglab.studies.sweep.cells.ways import how
 from laglab.studies.sweep.loading import study_of, to_toml
-from laglab.studies.trust import CONDITIONS, score, stations, studies
+from laglab.studies.trust import CONDITIONS, DEFAULT, score, stations, studies
+
+SEEDS = {**dict.fromkeys(CONDITIONS, 10), "lab-radio": 30}
+"""Of 10 the bounds of NEES are wide enough for a station that claims no doubt of its inputs."""
+MISSING = {"all of these": 1}
+"""How many of the runs may not converge; none in the other conditions."""
+NEES = {"lab-radio": chi_square_bounds(SEEDS["lab-radio"]), "lab-real": (0.0, 6.0)}
+"""Between which it must be, where more is asked for than to arrive."""
 
 
 def test_the_command_leaves_table_and_picture_and_computes_nothing_twice(
@@ -60,6 +68,17 @@ def test_every_condition_can_be_run_with_every_station(name):
         assert scenario.estimator.guard is station.endswith(", guarded")
         p0 = 1e-4 if station.startswith("popf") else 1e-3
         assert scenario.estimator.initial_covariance == p0
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(300)  # a busy machine takes its time
+@pytest.mark.parametrize("name", list(CONDITIONS))
+def test_the_default_station_masters_every_condition(name):
+    (runs,) = computed([only_cell(name, f"{DEFAULT}, guarded", SEEDS[name])])
+    got = score(runs)
+    assert got.runs - got.converged <= MISSING.get(name, 0)
+    low, high = NEES.get(name, (0.0, np.inf))
+    assert low <= got.nees <= high
 
 
 def test_many_at_once_where_that_can_be():
