@@ -40,7 +40,7 @@ def shadow(
         first, last = (heard.tick, heard.tick) if first is None or last is None else (first, last)
         if heard.tick < last:
             return
-        with at_tick(heard.tick):
+        with at_tick(heard.tick), np.errstate(over="ignore", invalid="ignore"):
             for lost in range(heard.tick - last):
                 control = controller.unanswered(control) if lost else control
                 control = controller.advance(control)
@@ -72,11 +72,10 @@ def _followed(controller: Controller, control: Control, heard: SessionTick, firs
     else:
         drive = Demand(heard.command.v, heard.command.omega)
         plan = tuple(Demand(v, omega) for v, omega in heard.following)
-    with np.errstate(over="ignore", invalid="ignore"):
-        control = controller.correct(
-            control,
-            measured(heard.measurements, first, heard.tick),
-            echoes(heard.measurements, first, heard.tick),
-            recalled(heard.recalled, first, heard.tick),
-        )
+    control = controller.correct(
+        control,
+        measured(heard.measurements, first, heard.tick),
+        echoes(heard.measurements, first, heard.tick),
+        recalled(heard.recalled, first, heard.tick),
+    )
     return control._replace(drive=drive, plan=plan)

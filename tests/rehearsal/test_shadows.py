@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+import laglab
 from laglab.results.shadows import shadowing
 
 
@@ -50,3 +51,11 @@ def test_what_was_said_of_ticks_that_the_trace_lacks_is_left_out() -> None:
     said = {"tick": np.arange(4.0), **dict.fromkeys(("x", "y", "theta"), np.arange(4.0))}
     columns = shadowing({"tick": np.array([0.0, 2.0])}, said, "ekf")
     assert columns["x_ekf"].tolist() == [0.0, 2.0]
+
+
+def test_one_that_diverges_ends_early_and_quietly():
+    """Its matrices overflow in the prediction, too; a warning of numpy's is an error here."""
+    diverging = {"estimator.kind": "raw", "link.measurement_delay": 27, "duration": 30.0}
+    done = laglab.run("fig6", diverging | {"estimator.compare": ["popf"]})
+    shadow = done.trace["x_popf"]
+    assert np.abs(shadow[np.isfinite(shadow)]).max() > 1e6
