@@ -25,6 +25,9 @@ class Unit(NamedTuple):
     seconds: float
 
 
+MILLISECONDS = Unit("ms", 1e-3)
+
+
 def microseconds(piece: str) -> Unit:
     """For a piece of work such as a tick or a message."""
     return Unit(f"µs a {piece}", 1e-6)

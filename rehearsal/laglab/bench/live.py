@@ -9,13 +9,12 @@ from pathlib import Path
 from threading import Thread
 from urllib.parse import urlsplit
 
-from laglab.bench.harness import Bench, Contest, Progress, Turn, Unit
+from laglab.bench.harness import MILLISECONDS, Bench, Contest, Progress, Turn
 from laglab.bench.result import Figure, Result
 from laglab.bench.whole_run import lateness, realtime_scenario
 from laglab.live import Place, live_page
 from laglab.live.place import LOOPBACK
 
-MILLISECONDS = Unit("ms", 1e-3)
 NO_PAGE = "no page"
 CROWD = 100
 

@@ -87,6 +87,19 @@ def live(
     _run(live_bench.bench(seconds), rounds, json)
 
 
+@app.command("flood")
+def flood(
+    seconds: Annotated[float, typer.Option(min=1.0, help="Of each run, by the clock.")] = 10.0,
+    rounds: RoundsOption = 3,
+    json: JsonOption = None,
+) -> None:
+    """How late ticks begin while strangers send as fast as they can."""
+    require(STEPPING)
+    from laglab.bench import flood as flood_bench  # needs FMPy
+
+    _run(flood_bench.bench(seconds), rounds, json)
+
+
 @app.command("study")
 def study(
     robots: Annotated[int, typer.Option(min=1, help="Robots at once.")] = 1000,
