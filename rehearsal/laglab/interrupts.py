@@ -2,19 +2,47 @@
 
 import os
 import signal
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext, suppress
+from types import FrameType
 from typing import NoReturn
 
 INTERRUPTED = 130
 
 
+SIGNALS = [
+    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
+]
+
+
 def on_interrupt(handler: Callable[..., object]) -> None:
     """Call the handler from now on; a signal that we were started to ignore stays ignored."""
-    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
-        number = getattr(signal, name, None)
-        if number and signal.getsignal(number) is not signal.SIG_IGN:
+    for number in SIGNALS:
+        if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, handler)
+
+
+@contextmanager
+def put_off() -> Iterator[None]:
+    """The first interrupt waits until what the context does is done; a second one does not."""
+    handlers = {number: signal.getsignal(number) for number in SIGNALS}
+    came: list[int] = []
+
+    def later(number: int, frame: FrameType | None) -> None:
+        came.append(number)
+        handler = handlers[number]
+        assert callable(handler), "it was not ignored"
+        with nullcontext() if came[1:] else suppress(KeyboardInterrupt):
+            handler(number, frame)
+
+    on_interrupt(later)
+    try:
+        yield
+    finally:
+        for number, handler in handlers.items():
+            signal.signal(number, handler)
+    if came:
+        raise KeyboardInterrupt
 
 
 def deafen() -> None:

@@ -220,3 +220,33 @@ def test_an_interrupt_that_meets_a_string_is_no_other(tmp_path: Path) -> None:
     laglab = (sys.executable, "-m", "laglab", "run", "fig6", "--estimator", "eager:Filter")
     ended = subprocess.run(laglab, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert (ended.returncode, ended.stderr) == (130, "laglab: interrupted\n")
+
+
+INTERRUPTING = """import os
+import signal
+from pathlib import Path
+
+from laglab_control import Ekf
+
+class Filter(Ekf):
+    def predict(self, state, u):
+        for number in range({times}):
+            if Path("run/trace.csv").exists() and not Path(f"sent-{{number}}").exists():
+                Path(f"sent-{{number}}").touch()
+                os.kill(os.getpid(), signal.SIGTERM)
+        return super().predict(state, u)
+"""
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_results_that_are_being_written_are_finished_unless_it_comes_twice(
+    start: Start, tmp_path: Path, times: int
+) -> None:
+    """A filter beside the loop is run when that is over, in the process that is told to end."""
+    (tmp_path / "eager.py").write_text(INTERRUPTING.format(times=times))
+    compared = ("--estimator", "delayed-ekf", "--estimator", "eager:Filter")
+    run = start("run", "fig6", "--duration", "1", *compared, "--out", "run")
+    output, errors = run.communicate(timeout=30)
+    assert (run.returncode, errors.splitlines()[-1]) == (130, "laglab: interrupted")
+    assert ("results in run" in output) == (times == 1)
+    assert (tmp_path / "run" / "summary.json").exists() == (times == 1)

@@ -8,6 +8,7 @@ from typing import NoReturn
 import typer
 
 from laglab.errors import RefusedError, ResultsError, RunError
+from laglab.interrupts import put_off
 from laglab.live import LivePage
 from laglab.results.complete import Way, complete
 from laglab.results.place import REPORT_FILE
@@ -26,15 +27,17 @@ def conclude(
     report: bool = False,
     page: LivePage | None = None,
 ) -> NoReturn:
-    """Say at once what broke, if something did; write the results and show them; end with the
-    run's exit code. Raises ResultsError, and KeyboardInterrupt for a run that never began."""
+    """Say at once what broke, if something did; write the results and show them, whatever comes
+    meanwhile; end with the run's exit code. Raises ResultsError, and KeyboardInterrupt for a run
+    that never began."""
     if ending.problem:
         print(f"laglab: {ending.problem}", file=sys.stderr, flush=True)
         _tell(page, ending.problem)
     try:
-        run = complete(scenario, way, ending, directory)
-        _tell(page, run.summary.verdict)
-        _show(run)
+        with put_off():
+            run = complete(scenario, way, ending, directory)
+            _tell(page, run.summary.verdict)
+            _show(run)
         if report:
             report_on(run)
     except (RefusedError, RunError):
