@@ -15,6 +15,11 @@ from laglab_station.saying import said
 
 MakeController = Callable[[StationConfig], Controller]
 
+STANDS = (
+    "the robot stands still, whatever it is sent: see whether it is armed, refuses such commands, "
+    "gets none of them, or gets them later than n says"
+)
+
 
 class Driver:
     """Drives a robot that was met at its tick `first`.

@@ -85,6 +85,47 @@ class PlayedOut:
         self._playout.clear()
 
 
+class Hearing:
+    """What ticks bring: as it comes, all of it when its tick tells so, and as late as it is to be
+    used. A measurement is used `playout` ticks after its sampling, or at once if that is 0."""
+
+    def __init__(self, playout: int) -> None:
+        self._coming = Coming()
+        self._overtaken = Overtaken()
+        self._played_out = PlayedOut(playout) if playout else None
+
+    @property
+    def late(self) -> int:
+        """Measurements that came too late, and were not used."""
+        return self._played_out.late if self._played_out else 0
+
+    def hear(self, message: Measurement | protocol.Applied) -> None:
+        """One more."""
+        self._coming.hear(message)
+
+    def by(self, tick: protocol.Tick) -> Came | None:
+        """All that came with it; None where something is missing: the robot will repeat it."""
+        came = self._coming.take()
+        return came if came.complete(tick) else None
+
+    def put_aside(self, tick: int, came: Came) -> None:
+        """What a tick brought that is not answered."""
+        self._overtaken.hear(self._played(tick, came))
+
+    def due(self, tick: int, came: Came) -> Came:
+        """What there is to use at a tick that is answered, and brought this."""
+        return self._overtaken.take(self._played(tick, came))
+
+    def _played(self, tick: int, came: Came) -> Came:
+        return self._played_out.take(tick, came) if self._played_out else came
+
+    def begin_anew(self) -> None:
+        """Drop what is put aside or held: it is another robot's."""
+        self._overtaken = Overtaken()
+        if self._played_out:
+            self._played_out.begin_anew()
+
+
 def measured(messages: Sequence[Measurement], first: int, tick: int) -> list[Measured]:
     """The poses measured from tick `first` to the present `tick`; no others make sense."""
     return [

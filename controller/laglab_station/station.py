@@ -32,19 +32,14 @@ from laglab_protocol import (
     Timesync,
 )
 from laglab_station.alarms import Alarms
-from laglab_station.driver import Driver, MakeController
-from laglab_station.hearing import Came, Coming, Overtaken, PlayedOut
+from laglab_station.driver import STANDS, Driver, MakeController
+from laglab_station.hearing import Came, Hearing
 from laglab_station.report import Calibrated, StationReport
 from laglab_station.saying import emergency_stop_for
 from laglab_station.warned import Warnings
 
 LONGEST_GAP = MEMORY
 """Ticks without a word, after which nobody knows what the robot did meanwhile."""
-
-STANDS = (
-    "the robot stands still, whatever it is sent: see whether it is armed, refuses such commands, "
-    "gets none of them, or gets them later than n says"
-)
 
 
 class Station:
@@ -82,9 +77,7 @@ class Station:
         self.settings = settings or Settings(config.model.sample_time)
         self.robot_settings: Settings | None = None
         self._robot: tuple[int, int] | None = None
-        self._coming = Coming()
-        self._overtaken = Overtaken()
-        self._played_out = PlayedOut(playout) if playout else None
+        self._hearing = Hearing(playout)
         self._restart = Restart()
         self._answer: list[Message] = []
         self._outcome: End | None = None
@@ -135,7 +128,7 @@ class Station:
             alarms=tuple(self._alarms.told),
             alarms_raised=self._alarms.raised,
             gated=self._driver.gated,
-            late=self._played_out.late if self._played_out else 0,
+            late=self._hearing.late,
             emergency_tick=self._warnings.emergency_tick,
             calibration=learned,
         )
@@ -203,7 +196,7 @@ class Station:
             return []
         match frame.message:
             case Measurement() | Applied():
-                self._coming.hear(frame.message)
+                self._hearing.hear(frame.message)
             case Tick():
                 self._robot = sender
                 return self._hear_tick(frame.message)
@@ -233,11 +226,8 @@ class Station:
             f"tick {said.tick} was passed over: answers take longer than ticks, and a newer one "
             "had come",
         )
-        came = self._coming.take()
-        if came.complete(said):
-            if self._played_out:
-                came = self._played_out.take(said.tick, came)
-            self._overtaken.hear(came)
+        if came := self._hearing.by(said):
+            self._hearing.put_aside(said.tick, came)
         return True
 
     def _hear_end(self, end: End) -> list[Message]:
@@ -252,17 +242,15 @@ class Station:
         return [] if answered else [end]
 
     def _hear_tick(self, message: Tick) -> list[Message]:
-        came = self._coming.take()
-        if not came.complete(message):
+        came = self._hearing.by(message)
+        if came is None:
             return []
         if self._outcome is None and self._is_new(message.tick):
             self._meet(message.tick)
         if message.tick == self.tick:
             return self._answer
         if self._outcome is None and (self.tick is None or message.tick > self.tick):
-            if self._played_out:
-                came = self._played_out.take(message.tick, came)
-            self._answer_timed(message.tick, self._overtaken.take(came))
+            self._answer_timed(message.tick, self._hearing.due(message.tick, came))
             return self._answer
         return []
 
@@ -274,9 +262,7 @@ class Station:
     def _meet(self, tick: int) -> None:
         """A robot that is new to us at this tick."""
         self._look_back()
-        self._overtaken = Overtaken()
-        if self._played_out:
-            self._played_out.begin_anew()
+        self._hearing.begin_anew()
         if tick or self.tick is not None:
             self._driver.tick = None  # if its driver cannot be made, it was never answered
             driver = Driver(self._config, self._make_controller, self._alarms, tick)
