@@ -292,10 +292,8 @@ def test_a_robot_that_never_speaks_is_named(tmp_path: Path) -> None:
         open_endpoint(endpoint.name.replace("udpin", "udpout")) as station,
     ):
         station.send(Sender(STATION_SYSTEM, STATION_COMPONENT).frame(STATION_HEARTBEAT))
-        patience = Patience(silence=0.9)
-        around = Surroundings(Listener(endpoint, Receiver()), patience=patience)
+        around = Surroundings(Listener(endpoint, Receiver()), patience=Patience(silence=0.9))
         with pytest.raises(PlantSilentError, match="the robot never spoke") as silent:
             serve_remote(relay, Listener(robot, Receiver()), around)
         assert link in str(silent.value)
-        heard = Receiver().receive(station.receive(0.1))
-        assert End(0, EndReason.FAILED) in [frame.message for frame in heard]
+        assert End(0, EndReason.FAILED) in [f.message for f in frames_in(station.receive(0.1))]

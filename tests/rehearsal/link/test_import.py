@@ -11,17 +11,16 @@ import numpy as np
 import pytest
 
 from laglab.link.errors import LinkFileError
-from laglab.link.importing import How, read_link, read_table, recognise
-from laglab.link.importing.mahimahi import waited
+from laglab.link.importing import read_table, recognise
 from laglab.link.importing.tables import LARGEST
-from laglab.link.measured import MeasuredLink, read_measured
-from laglab.link.probing import Sizes
+from laglab.link.measured import read_measured
 from laglab.scenario import load
 from laglab_gateway import LinkRow
 
+from .measured import HOW, imported
+
 Laglab = Callable[..., subprocess.CompletedProcess[str]]
 Refused = Callable[..., str]
-HOW = How(Sizes(121, 75))
 
 LINUX = """\
 PING 192.0.2.7 (192.0.2.7) 56(84) bytes of data.
@@ -59,12 +58,6 @@ Request timed out.
 Reply from 192.0.2.7: bytes=32 time=12ms TTL=57
 Request timed out.
 """
-
-
-def imported(tmp_path: Path, data: str | bytes, how: How = HOW) -> MeasuredLink:
-    path = tmp_path / "measured"
-    path.write_bytes(data.encode() if isinstance(data, str) else data)
-    return read_link(path, how)
 
 
 @pytest.mark.parametrize(
@@ -162,38 +155,6 @@ def test_irtt_without_the_servers_times_is_halved(tmp_path: Path) -> None:
     measured = imported(tmp_path, json.dumps({"round_trips": trips}))
     for _, flow in measured.flows:
         np.testing.assert_allclose(flow.delay, 0.005)
-
-
-def test_a_trace_of_mahimahis_lets_frames_wait_for_their_turn(tmp_path: Path) -> None:
-    # Every 30 ms one opportunity: three frames of 121 bytes go together.
-    measured = imported(tmp_path, "30\n")
-    np.testing.assert_allclose(measured.command.delay[1:7], [0.02, 0.01, 0.0] * 2, atol=1e-9)
-    assert measured.command.sent[-1] > 9.9
-    assert "how long they then travel comes on top" in measured.notes[0]
-
-
-def test_frames_that_do_not_fit_wait_for_the_next_opportunity() -> None:
-    # Of two frames of 1000 bytes the second's second half goes with the next one.
-    crossed = waited([10, 20], np.array([0.0, 0.0, 0.0]), 1000)
-    np.testing.assert_allclose(crossed, [0.01, 0.02, 0.02])
-    # What nobody uses is lost; then the trace begins again.
-    np.testing.assert_allclose(waited([10, 20], np.array([0.015, 0.021]), 100), [0.02, 0.03])
-
-
-def test_each_direction_may_have_a_trace_of_its_own(tmp_path: Path) -> None:
-    (tmp_path / "down").write_text("10\n")
-    measured = imported(tmp_path, "20\n40\n", HOW._replace(back=tmp_path / "down"))
-    assert measured.command.delay[1] == pytest.approx(0.01)
-    assert np.abs(measured.measurement.delay[1:]).max() < 1e-9
-
-
-@pytest.mark.parametrize("text", [None, "soon", "3\n2\n"])
-def test_a_bad_trace_for_the_way_back_is_named(tmp_path: Path, text: str | None) -> None:
-    back = tmp_path / "down"
-    if text is not None:
-        back.write_text(text)
-    with pytest.raises(LinkFileError, match=r"--back .*down: no mahimahi trace"):
-        imported(tmp_path, "20\n", HOW._replace(back=back))
 
 
 NETEM = """\
