@@ -1,4 +1,4 @@
-"""A robot in lock-step, eighty lines on pymavlink: `python pymavlink_robot.py PORT`.
+"""A robot in lock-step, some sixty lines on pymavlink: `python pymavlink_robot.py PORT`.
 
 It follows protocol/README.md alone, and answers what it must.
 """
@@ -12,7 +12,6 @@ from contextlib import suppress
 from laglab_protocol.dialect.generated import laglab as mavlink  # elsewhere: what mavgen makes
 
 ROBOT, STATION = (1, 1), (200, 190)
-UNSUPPORTED = mavlink.MAV_RESULT_UNSUPPORTED
 SAMPLE_TIME, REPEAT, SILENCE = 0.01, 0.1, 3.0  # [s]
 
 
@@ -21,16 +20,18 @@ class Robot:
         self.link = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self.link.bind(("127.0.0.1", port))
         self.link.settimeout(REPEAT / 2)
-        self.mav, self.frames, self.tick = mavlink.MAVLink(self, *ROBOT), [], None
+        self.mav, self.tick = mavlink.MAVLink(self, *ROBOT), None
+
+    def write(self, frame):  # pymavlink has made it
+        self.link.sendto(frame, self.station)
 
     def run(self):
         while True:
             with suppress(TimeoutError):
                 self.take(*self.link.recvfrom(2048))
-            now = time.monotonic()
-            if self.tick is not None and now - self.heard > SILENCE:
+            if self.tick is not None and time.monotonic() - self.heard > SILENCE:
                 self.end(mavlink.LAGLAB_END_REASON_FAILED)
-            elif self.tick is not None and now - self.said > REPEAT:
+            elif self.tick is not None and time.monotonic() - self.said > REPEAT:
                 self.say_tick()
 
     def take(self, datagram, sender):
@@ -41,13 +42,6 @@ class Robot:
                 self.station, self.heard = sender, time.monotonic()
                 getattr(self, message.get_type(), lambda _: None)(message)
 
-    def write(self, frame):
-        self.frames.append(frame)  # pymavlink has made it
-
-    def send(self):
-        self.link.sendto(b"".join(self.frames), self.station)
-        self.frames.clear()
-
     def HEARTBEAT(self, _):
         if self.tick is None:
             self.tick, self.stamp, self.before = 0, -1, 0
@@ -57,7 +51,6 @@ class Robot:
     def say_tick(self):
         self.mav.laglab_measurement_send(*self.pose, *self.speeds, self.tick, self.stamp)
         self.mav.laglab_tick_send(self.tick, 1)
-        self.send()
         self.said = time.monotonic()
 
     def LAGLAB_ESTIMATE(self, _):
@@ -81,8 +74,7 @@ class Robot:
 
     def COMMAND_LONG(self, request):
         if request.target_system in (ROBOT[0], 0) and request.target_component in (ROBOT[1], 0):
-            self.mav.command_ack_send(request.command, UNSUPPORTED, 0, 0, *STATION)
-            self.send()
+            self.mav.command_ack_send(request.command, 3, 0, 0, *STATION)  # unsupported
 
     COMMAND_INT = COMMAND_LONG
 
@@ -92,7 +84,6 @@ class Robot:
 
     def end(self, reason):
         self.mav.laglab_end_send(self.tick, reason)
-        self.send()
         self.tick = None
 
 
