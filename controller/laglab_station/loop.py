@@ -13,6 +13,7 @@ from laglab_protocol import (
     EndReason,
     FarEndGoneError,
     Frame,
+    Heartbeat,
     Listener,
     Refusals,
     Settings,
@@ -100,7 +101,7 @@ class _Loop:
         self._heard_again = False
         """Whether who is in force has said more than one thing: one alone may be astray."""
         self._met: float | None = None
-        """When its first tick had come."""
+        """When the first tick of who is in force had come, or who it is changed."""
         self._refusals = Refusals(self._heard)
 
     def say(self, frames: list[bytes]) -> None:
@@ -197,7 +198,8 @@ class _Loop:
         if not frames:
             return []
         if link.sender != link.peer:
-            if link.peer is not None and self._heard_again and now - self._heard < IN_FORCE:
+            kept = link.peer is not None and now - self._heard < IN_FORCE
+            if kept and (self._heard_again or not _knocks(frames)):
                 return []
             self._accept_peer(now)
         else:
@@ -254,3 +256,8 @@ class _Loop:
         for text in self._refusals.news([self._listener], monotonic()):
             self._station.warn(text, text)
             self._look_around()
+
+
+def _knocks(frames: Sequence[Frame]) -> bool:
+    """Whether a robot begins there: a tick alone may be a stray one, and would be answered."""
+    return any(isinstance(frame.message, Heartbeat) for frame in frames)

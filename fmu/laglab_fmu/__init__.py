@@ -20,6 +20,7 @@ from laglab_fmu.errors import (
 )
 from laglab_fmu.others import OtherParameters
 from laglab_fmu.parameters import INTEGRATIONS, Reading, RobotParameters, ShippedParameters
+from laglab_fmu.unpacked import clear_unpacked
 
 if TYPE_CHECKING:
     from laglab_fmu.archive.build import build_fmus
@@ -49,6 +50,7 @@ __all__ = [
     "WiringError",
     "build_fmus",
     "c_compiler",
+    "clear_unpacked",
     "compile_library",
     "fleet_path",
     "fmu_path",

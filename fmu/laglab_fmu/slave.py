@@ -6,9 +6,7 @@ they serve for the life cycle; all else calls the functions of the same library 
 
 import ctypes
 import os
-import secrets
 import shutil
-import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import partial
@@ -24,6 +22,7 @@ from laglab_fmu.compiler import host_platform
 from laglab_fmu.errors import CallError, FmuNotBuiltError
 from laglab_fmu.models import ROBOT, Kind, Model, Role, model_named, token
 from laglab_fmu.parameters import ShippedParameters, values
+from laglab_fmu.unpacked import own_folder
 
 VERSIONS = (2, 3)
 
@@ -221,7 +220,7 @@ def open_slave(path: Path, make: Callable[[str], Slave], stack: ExitStack) -> Sl
     Raises:
         CallError: it does not start.
     """
-    folder = Path(tempfile.gettempdir(), f"laglab-fmu-{secrets.token_hex(8)}")
+    folder = own_folder()
     stack.callback(shutil.rmtree, folder, ignore_errors=True)
     folder.mkdir(mode=0o700)  # after the callback, as an interrupt may come in between
     try:

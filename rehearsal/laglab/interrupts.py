@@ -3,7 +3,7 @@
 import os
 import signal
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import NoReturn
 
@@ -32,8 +32,10 @@ def put_off() -> Iterator[None]:
         came.append(number)
         handler = handlers[number]
         assert callable(handler), "it was not ignored"
-        with nullcontext() if came[1:] else suppress(KeyboardInterrupt):
-            handler(number, frame)
+        with suppress(KeyboardInterrupt):
+            handler(number, frame)  # it may keep in mind that it was called
+        if came[1:]:
+            raise KeyboardInterrupt
 
     on_interrupt(later)
     try:

@@ -23,7 +23,6 @@ from laglab_protocol import (
     open_endpoint,
 )
 from laglab_station import Onlooker, RobotSilentError, Station, run_station
-from laglab_station.loop import IN_FORCE
 
 
 @pytest.fixture
@@ -126,7 +125,9 @@ def test_a_robot_that_falls_silent_is_named_with_its_last_tick(link):
 class HeldUp(Listener):
     """Once, between a look that finds nothing and the clock."""
 
-    met, held_up = False, threading.Event()
+    def __init__(self, endpoint):
+        super().__init__(endpoint, Receiver())
+        self.met, self.held_up = False, threading.Event()
 
     def listen(self, timeout):
         frames = super().listen(timeout)
@@ -139,7 +140,7 @@ class HeldUp(Listener):
 
 def test_who_is_held_up_does_not_take_the_robot_for_silent(link):
     robot, endpoint = link
-    listener, results = HeldUp(endpoint, Receiver()), []
+    listener, results = HeldUp(endpoint), []
     config = StationConfig(estimator="raw")
     thread = threading.Thread(
         target=lambda: results.append(run_station(Station(config), listener, 2.5))
@@ -205,6 +206,20 @@ def test_a_tick_of_somebody_who_never_answers_locks_no_station(waiting, speaker)
     assert outcome() == [End(1, EndReason.COMPLETED)]
 
 
+def test_a_stray_tick_takes_no_station_from_its_robot(waiting):
+    """Not even after a single word of the robot's."""
+    url, outcome, _ = waiting
+    with open_endpoint(url) as robot, open_endpoint(url) as stranger:
+        robot.send(Sender(1, 1).frame(Tick(0, 0)))
+        heard = []
+        while not any(isinstance(each.message, Command) for each in heard):
+            heard = frames_in(robot.receive(5.0))
+        stranger.send(Sender(1, 1).frame(Tick(5000, 0)))
+        time.sleep(0.1)
+        drive(robot, Tick(1, 0), End(1, EndReason.COMPLETED))
+    assert outcome() == [End(1, EndReason.COMPLETED)]
+
+
 def test_a_robot_that_knocks_after_a_stray_tick_is_called_at_once(waiting):
     """And is not blamed for what who said one thing and went has not told."""
     url, outcome, warnings = waiting
@@ -213,7 +228,7 @@ def test_a_robot_that_knocks_after_a_stray_tick_is_called_at_once(waiting):
         assert frames_in(stranger.receive(5.0)), "it is taken for the robot"
     with open_endpoint(url) as robot:
         robot.send(Sender(1, 1).frame(Heartbeat(0, 10, 0, 0, 4, 3)))
-        assert STATION_HEARTBEAT in [each.message for each in frames_in(robot.receive(IN_FORCE))]
+        assert STATION_HEARTBEAT in [each.message for each in frames_in(robot.receive(2.5))]
         settings = Settings(StationConfig().model.sample_time)
         drive(robot, [settings, Tick(0, 0)], Tick(1, 0), End(1, EndReason.COMPLETED))
     assert outcome() == [End(1, EndReason.COMPLETED)]

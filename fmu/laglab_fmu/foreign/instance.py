@@ -1,8 +1,6 @@
 """An instance of somebody's FMU: from the file to what can be stepped, and what it logs."""
 
-import secrets
 import shutil
-import tempfile
 from collections import deque
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -22,6 +20,7 @@ from laglab_fmu.compiler import host_platform
 from laglab_fmu.errors import CallError, FmuFileError
 from laglab_fmu.foreign.file import DAMAGED, FmuFile, one_line
 from laglab_fmu.foreign.wiring import Value
+from laglab_fmu.unpacked import own_folder
 
 KEPT = 100
 """Lines of what the FMU logs; older ones are forgotten."""
@@ -47,7 +46,7 @@ def instance(file: FmuFile, log: Log) -> Iterator[Any]:
     Raises FmuFileError: it does not start.
     """
     interface = "CoSimulation" if file.interface() == "co-simulation" else "ModelExchange"
-    folder = Path(tempfile.gettempdir(), f"laglab-fmu-{secrets.token_hex(8)}")
+    folder = own_folder()
     try:
         folder.mkdir(mode=0o700)
         fmu = _started(file, interface, folder, log)

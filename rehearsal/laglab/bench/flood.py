@@ -27,7 +27,7 @@ from laglab.scenario import Scenario
 from laglab.soak.strangers import datagrams
 from laglab.soak.turn import Strangers
 from laglab_gateway import FileRecorder, Patience, Surroundings, TimingReport
-from laglab_protocol import Endpoint, Listener, open_endpoint
+from laglab_protocol import Endpoint, EndReason, Listener, open_endpoint
 
 NOBODY, FLOOD = "nobody else", "a flood"
 LOCAL = "udpin://127.0.0.1:0"
@@ -91,8 +91,11 @@ def _timing(scenario: Scenario, flooded: bool) -> TimingReport:
             robot.watch([watch]),
         )
         ending = serve_alone(robot, around)
-    if ending.timing is None or ending.problem:
-        raise RunError(f"the loop ended early: {ending.problem}")
+    reason = ending.outcome and ending.outcome.reason
+    if reason is EndReason.INTERRUPTED:
+        raise KeyboardInterrupt  # the loop has ended in order; the bench is to end, too
+    if ending.timing is None or reason is not EndReason.COMPLETED:
+        raise RunError(f"the loop ended early: {ending.problem or reason}")
     return ending.timing
 
 

@@ -10,6 +10,7 @@ from laglab.commands.group import group
 from laglab.commands.options import KeyOption, WidthOption
 from laglab.extras import DRAWING, require
 from laglab.files import file_place, write_whole
+from laglab.interrupts import put_off
 from laglab.link import (
     FittedLink,
     How,
@@ -137,9 +138,10 @@ def probe(
             lambda prober: told(prober.sent),
             say,
         )
-    write_link_log(measured, out)
-    print_measured(measured, terminal())
-    print(out)
+    with put_off():
+        write_link_log(measured, out)
+        print_measured(measured, terminal())
+        print(out)
     if cut_short:
         raise cut_short
 

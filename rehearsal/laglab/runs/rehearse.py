@@ -41,7 +41,7 @@ Transport = Literal["inline", "udp", "serial"]
 
 NOTICE_SECONDS = 8.0
 """[s] What a gateway needs, besides the silence timeout, to say that its station is silent: on a
-stream it tries for two to tell it of the end."""
+stream it tries for two to tell it of the end; the rest is for a busy machine."""
 STILL_STARTING = 0.5
 """[s] A side that has not met the other yet has no last words."""
 GOODBYE_SECONDS = 5.0
@@ -205,7 +205,7 @@ class _Rehearsal:
         """A side that is told of its far end's end, and says nothing of it."""
         if not self._over:
             called = self._scenario.plant.called
-            said = f"its process does not go on: see whether {called} returns from every call"
+            said = f"the robot's process does not go on: it may be that {called} does not return"
             self._fail(said, begun=True)
 
     def _take_of_gateway(self, report: object) -> None:

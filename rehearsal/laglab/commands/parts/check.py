@@ -37,7 +37,7 @@ def check(
         dict(map(assignment, option or []))
     except ScenarioError as error:
         raise ScenarioError(str(error).replace("--set", "--option")) from None
-    if name in SHIPPED["plant"]:
+    if name in SHIPPED["plant"] and as_ in (None, "plant"):
         require(STEPPING)
     kind, found = checked_apart(CheckOrder(name, as_, tuple(option or ())))
     terminal().print(findings_table(found), highlight=False)

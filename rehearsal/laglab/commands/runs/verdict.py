@@ -27,9 +27,9 @@ def conclude(
     report: bool = False,
     page: LivePage | None = None,
 ) -> NoReturn:
-    """Say at once what broke, if something did; write the results and show them, whatever comes
-    meanwhile; end with the run's exit code. Raises ResultsError, and KeyboardInterrupt for a run
-    that never began."""
+    """Say at once what broke, if something did; write the results and show them, for which an
+    interrupt waits; end with the run's exit code. Raises ResultsError, and KeyboardInterrupt for a
+    run that never began."""
     if ending.problem:
         print(f"laglab: {ending.problem}", file=sys.stderr, flush=True)
         _tell(page, ending.problem)

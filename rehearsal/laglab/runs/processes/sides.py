@@ -1,8 +1,9 @@
 """The two sides of a rehearsal, each in a process of its own."""
 
-from contextlib import closing
+from contextlib import ExitStack, closing
 from pathlib import Path
 
+from laglab.interrupts import put_off
 from laglab.live import fed
 from laglab.runs.clock import LoopClock
 from laglab.runs.errors import CUT_SHORT, SIDE_ERRORS
@@ -33,31 +34,33 @@ def robot_side(order: Order, tell: Tell) -> None:
     scenario = Scenario.from_toml(order.scenario)
     begun = False
     try:
-        with (
-            open_robot(scenario, _setup(order)) as robot,
-            closing(FileRecorder(Path(order.directory))) as files,
-            fed(files, order.live, robot.controls) as all_told,
-            open_endpoint(order.url) as endpoint,
-            short_pauses(),
-        ):
-            tell(Listening(endpoint.name))
-            begun = True
-            recorder, now = watched(all_told, scenario, order.plant)
-            clock = LoopClock(lambda tick: tell(Progress(tick, clock.seconds, now())))
-            around = Surroundings(
-                Listener(endpoint, robot.codec.receiver),
-                recorder,
-                Patience(silence=scenario.silence_timeout, connect=START),
-                progress=clock,
-                warn=lambda text: tell(Warned(text)),
-            )
-            try:
-                (reason, tick), link, timing = robot.serve(around)
-            except SIDE_ERRORS:
-                _, link, timing = robot.so_far()
-                tell(CutShort(clock.seconds, link, timing))
-                raise
-        tell(Finished(reason, tick, clock.seconds, link, timing))
+        with ExitStack() as last:
+            with (
+                open_robot(scenario, _setup(order)) as robot,
+                closing(FileRecorder(Path(order.directory))) as files,
+                fed(files, order.live, robot.controls) as all_told,
+                open_endpoint(order.url) as endpoint,
+                short_pauses(),
+            ):
+                tell(Listening(endpoint.name))
+                begun = True
+                recorder, now = watched(all_told, scenario, order.plant)
+                clock = LoopClock(lambda tick: tell(Progress(tick, clock.seconds, now())))
+                around = Surroundings(
+                    Listener(endpoint, robot.codec.receiver),
+                    recorder,
+                    Patience(silence=scenario.silence_timeout, connect=START),
+                    progress=clock,
+                    warn=lambda text: tell(Warned(text)),
+                )
+                try:
+                    (reason, tick), link, timing = robot.serve(around)
+                except SIDE_ERRORS:
+                    _, link, timing = robot.so_far()
+                    tell(CutShort(clock.seconds, link, timing))
+                    raise
+                last.enter_context(put_off())  # of a run that is over everything is told
+            tell(Finished(reason, tick, clock.seconds, link, timing))
     except SIDE_ERRORS as error:
         tell(Failed(str(error), begun or isinstance(error, CUT_SHORT)))
 
