@@ -65,6 +65,7 @@ def ended(then: str) -> "subprocess.CompletedProcess[str]":
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="signals as POSIX has them")
+@pytest.mark.slow
 @pytest.mark.parametrize("then", HEEDING.values(), ids=HEEDING)
 def test_who_heeds_signals_goes_on(then: str) -> None:
     done = ended(then)

@@ -127,7 +127,7 @@ def test_ctrl_c_while_a_port_is_unplugged(start: Start, tmp_path: Path) -> None:
     assert errors.splitlines() == ["laglab: interrupted"]
 
 
-@pytest.mark.parametrize("pace", ["lockstep", "realtime"])
+@pytest.mark.parametrize("pace", [pytest.param("lockstep", marks=pytest.mark.slow), "realtime"])
 def test_a_controller_that_stops_reading_is_noticed(
     start: Start, tmp_path: Path, pace: str
 ) -> None:

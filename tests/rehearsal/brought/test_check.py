@@ -164,7 +164,9 @@ def test_the_kind_is_known_by_name_or_methods() -> None:
 @pytest.mark.parametrize(
     ("name", "patience", "said"),
     [
-        ("broken:Sleeping", 9.0, "it did not answer within 9 s"),
+        pytest.param(
+            *("broken:Sleeping", 9.0, "it did not answer within 9 s"), marks=pytest.mark.slow
+        ),
         ("broken:Leaving", 60.0, "the check's process ended with exit code 7 and no word"),
     ],
 )

@@ -56,7 +56,10 @@ def assert_kept(folder: Path, said: str) -> None:
         assert flow.lost.mean() < 0.5
 
 
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+@pytest.mark.parametrize(
+    "name",
+    ["SIGINT", *(pytest.param(name, marks=pytest.mark.slow) for name in ("SIGTERM", "SIGHUP"))],
+)
 def test_an_interrupt_keeps_what_was_measured(start: Start, tmp_path: Path, name: str) -> None:
     once = iter([signal.Signals[name]])
 
