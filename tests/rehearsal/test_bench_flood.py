@@ -1,4 +1,4 @@
-"""The benchmark of a flood runs the loop with strangers and without, and leaves none behind."""
+"""The benchmark of a flood runs the loop with strangers and without."""
 
 import subprocess
 from collections.abc import Callable

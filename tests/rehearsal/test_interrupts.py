@@ -32,6 +32,7 @@ COMMANDS = {
     "soak": ("soak", "--minutes", "10"),
     "sweep": ("sweep", "gains", "--out", "study"),
     "bench": ("bench", "loop", "--rounds", "100"),
+    "flood": ("bench", "flood", "--rounds", "100"),
     "conform": ("conform", "udpin://127.0.0.1:0", "--side", "robot"),
     "cable": ("serial", "port-1", "port-2"),
 }

@@ -16,8 +16,7 @@ from msgspec import Struct
 
 from laglab.bench.harness import MILLISECONDS, Bench, Contest, Progress, Turn
 from laglab.bench.result import Figure, Result
-from laglab.bench.whole_run import realtime_scenario
-from laglab.errors import RunError
+from laglab.bench.whole_run import realtime_scenario, whole
 from laglab.runs.alone import serve_alone
 from laglab.runs.processes.child import Tell, started
 from laglab.runs.processes.reports import Order
@@ -27,7 +26,7 @@ from laglab.scenario import Scenario
 from laglab.soak.strangers import datagrams
 from laglab.soak.turn import Strangers
 from laglab_gateway import FileRecorder, Patience, Surroundings, TimingReport
-from laglab_protocol import Endpoint, EndReason, Listener, open_endpoint
+from laglab_protocol import Endpoint, Listener, open_endpoint
 
 NOBODY, FLOOD = "nobody else", "a flood"
 LOCAL = "udpin://127.0.0.1:0"
@@ -90,13 +89,9 @@ def _timing(scenario: Scenario, flooded: bool) -> TimingReport:
             Patience(silence=PATIENT),
             robot.watch([watch]),
         )
-        ending = serve_alone(robot, around)
-    reason = ending.outcome and ending.outcome.reason
-    if reason is EndReason.INTERRUPTED:
-        raise KeyboardInterrupt  # the loop has ended in order; the bench is to end, too
-    if ending.timing is None or reason is not EndReason.COMPLETED:
-        raise RunError(f"the loop ended early: {ending.problem or reason}")
-    return ending.timing
+        timing = whole(serve_alone(robot, around)).timing
+    assert timing is not None, "it was paced by the clock"
+    return timing
 
 
 def _port(endpoint: Endpoint) -> int:

@@ -83,9 +83,15 @@ def lateness(seconds: float, directory: Path, live: str | None = None) -> Timing
 def _run(
     transport: Transport, scenario: Scenario, directory: Path, live: str | None = None
 ) -> Ending:
-    ending = run_into(directory, scenario, transport, unheard, Setup(live=live))
-    if ending.outcome is None:
-        raise RunError(f"the loop over {transport} ended early: {ending.problem}")
-    if ending.outcome.reason is EndReason.INTERRUPTED:
+    return whole(run_into(directory, scenario, transport, unheard, Setup(live=live)))
+
+
+def whole(ending: Ending) -> Ending:
+    """The same. Raises RunError where the loop ended early; KeyboardInterrupt: it has ended in
+    order, and the bench is to end, too."""
+    reason = ending.outcome and ending.outcome.reason
+    if reason is EndReason.INTERRUPTED:
         raise KeyboardInterrupt
+    if reason is not EndReason.COMPLETED:
+        raise RunError(f"the loop ended early: {ending.problem or reason}")
     return ending
