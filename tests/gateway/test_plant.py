@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from laglab.runs.plant import FmuPlant
+from laglab.scenario import load
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
     Gateway,
@@ -160,6 +161,7 @@ def test_a_run_with_a_real_robot_says_that_its_pose_is_measured(
     assert_robot_let_go(robot)
     summary = json.loads((tmp_path / "run" / "summary.json").read_text())
     assert (summary["pose"], summary["ticks"]) == ("measured", 200)
+    assert load(tmp_path / "run" / "scenario.toml").pace == "realtime", "no answer was waited for"
     trace = np.genfromtxt(tmp_path / "run" / "trace.csv", delimiter=",", names=True)
     late = trace[trace["time"] >= trace["time"][-1] - 1.0]
     rho = np.hypot(np.nanmean(late["x_meas"]), np.nanmean(late["y_meas"]))

@@ -98,12 +98,15 @@ def test_a_crowd_at_the_door_is_not_told_to_the_terminal(
     assert capsys.readouterr().err == ""
 
 
-def test_of_a_real_robot_the_page_knows_no_true_pose() -> None:
-    scenario = load("lab")
+def test_of_a_real_robot_the_page_knows_no_true_pose_and_no_deadlines() -> None:
+    scenario = load("lab", {"pace": "realtime"})
     order = LiveOrder(scenario.to_toml(), "127.0.0.1", 0, "t", "s", False, False, "simulated")
     real = msgspec.structs.replace(order, measured=True)
     assert "estimate less robot" in page_html(scenario, order, controls=False)
     assert "estimate less measurement" in page_html(scenario, real, controls=False)
+    late = "ticks began late by"
+    assert late in page_html(scenario, order, controls=False)
+    assert late not in page_html(scenario, real, controls=False)
 
 
 def test_outages_that_are_announced_are_hatched_as_in_the_report() -> None:

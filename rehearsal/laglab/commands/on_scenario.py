@@ -121,16 +121,24 @@ def _parameters(by_default: object, estimators: bool) -> Iterator[inspect.Parame
         yield inspect.Parameter(_parameter(key), keyword, default=option, annotation=own.type)
 
 
-def _refuse_idle(overrides: Overrides, loaded: Scenario, real: str | None) -> None:
-    """Raises ScenarioError: nobody would read what somebody asks for."""
+def _before_real_robot(overrides: Overrides, address: str) -> Overrides:
+    """With its own pace, which is the clock's. Raises ScenarioError: nobody would read what
+    somebody asks for."""
+    if idle := sorted(overrides.keys() & OF_A_SIMULATED_ROBOT):
+        raise ScenarioError(
+            f"{idle[0]}: the robot at {address} has a clock of its own, and is what it is: leave "
+            "it out, or --plant"
+        )
+    return {**overrides, "pace": "realtime", "speed": 1.0}
+
+
+def _loaded(name: str, overrides: Overrides) -> Scenario:
+    """Raises ScenarioError also where nobody would read what somebody asks for."""
+    loaded = load(name, overrides, say)
     if "plant.fmi" in overrides and not loaded.plant.ships:
         called = loaded.plant.called
         raise ScenarioError(f"plant.fmi: {called} is as it was brought: leave --fmi out")
-    if real and (idle := sorted(overrides.keys() & OF_A_SIMULATED_ROBOT)):
-        raise ScenarioError(
-            f"{idle[0]}: the robot at {real} has a clock of its own, and is what it is: leave it "
-            "out, or --plant"
-        )
+    return loaded
 
 
 def on_scenario(
@@ -146,10 +154,10 @@ def on_scenario(
     own = list(inspect.signature(command).parameters.values())[1:]
 
     def wrapper(scenario: str, **options: Any) -> None:
-        overrides = _overrides(options)
-        loaded = load(scenario, overrides, say)
-        _refuse_idle(overrides, loaded, options.get("plant"))
-        command(loaded, **options)
+        overrides: Overrides = _overrides(options)
+        if real := options.get("plant"):
+            overrides = _before_real_robot(overrides, real)
+        command(_loaded(scenario, overrides), **options)
 
     keyword = inspect.Parameter.KEYWORD_ONLY
     parameters = [

@@ -39,12 +39,10 @@ OnTick = Callable[[int, Glance | None], None]
 """Told now and then which tick is over, and how the run is where it goes by the clock."""
 
 
-def watched(
-    recorder: Recorder, scenario: Scenario, plant: str | None
-) -> tuple[Recorder, Callable[[], Glance | None]]:
+def watched(recorder: Recorder, scenario: Scenario) -> tuple[Recorder, Callable[[], Glance | None]]:
     """A recorder that tells the given one all, and a function that says how the run is; nothing in
     lock-step, where nobody could read it."""
-    if scenario.pace != "realtime" and plant is None:
+    if scenario.pace != "realtime":
         return recorder, lambda: None
     glances = Glances(scenario)
     return Tapped(recorder, glances), glances.now

@@ -61,7 +61,7 @@ def rehearse_inline(
 ) -> Ending:
     """Both sides in this process: the same bytes, with nothing between them."""
     setup = setup or Setup()
-    recorder, now = watched(recorder, scenario, setup.plant)
+    recorder, now = watched(recorder, scenario)
     clock = LoopClock(lambda tick: progress(tick, now()))
     warnings: list[str] = []
     station: Station | None = None

@@ -113,7 +113,7 @@ def gateway(
             progress_of(scenario) as told,
             fed(FileRecorder(directory), line, robot.controls) as files,
         ):
-            recorder, now = watched(files, scenario, plant)
+            recorder, now = watched(files, scenario)
             around = Surroundings(
                 Listener(link, robot.codec.receiver),
                 recorder,

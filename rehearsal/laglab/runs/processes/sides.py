@@ -44,7 +44,7 @@ def robot_side(order: Order, tell: Tell) -> None:
             ):
                 tell(Listening(endpoint.name))
                 begun = True
-                recorder, now = watched(all_told, scenario, order.plant)
+                recorder, now = watched(all_told, scenario)
                 clock = LoopClock(lambda tick: tell(Progress(tick, clock.seconds, now())))
                 around = Surroundings(
                     Listener(endpoint, robot.codec.receiver),
