@@ -59,8 +59,13 @@ DEAF = """
 
 def ended(then: str) -> "subprocess.CompletedProcess[str]":
     script = f"{BEGUN}    {then.strip()}\nprint('went on')\n"
+    quietly = ("-W", "ignore:This process:DeprecationWarning")  # Python 3.12 warns of every fork
     return subprocess.run(
-        [sys.executable, "-c", script], capture_output=True, text=True, timeout=50, check=False
+        [sys.executable, *quietly, "-c", script],
+        capture_output=True,
+        text=True,
+        timeout=50,
+        check=False,
     )
 
 
