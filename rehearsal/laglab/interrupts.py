@@ -22,9 +22,13 @@ def on_interrupt(handler: Callable[..., object]) -> None:
             signal.signal(number, handler)
 
 
+WRITING = b"writing the results; one more interrupt leaves without them\n"
+
+
 @contextmanager
-def put_off() -> Iterator[None]:
-    """The first interrupt waits until what the context does is done; a second one does not."""
+def put_off(notice: bytes = b"") -> Iterator[None]:
+    """The first interrupt waits until what the context does is done, of which `notice` tells on
+    standard error; a second one does not."""
     handlers = {number: signal.getsignal(number) for number in SIGNALS}
     came: list[int] = []
 
@@ -36,6 +40,8 @@ def put_off() -> Iterator[None]:
             handler(number, frame)  # it may keep in mind that it was called
         if came[1:]:
             raise KeyboardInterrupt
+        with suppress(OSError):
+            os.write(2, notice)
 
     on_interrupt(later)
     try:

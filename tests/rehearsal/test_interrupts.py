@@ -251,3 +251,21 @@ def test_results_that_are_being_written_are_finished_unless_it_comes_twice(
     assert (run.returncode, errors.splitlines()[-1]) == (130, "laglab: interrupted")
     assert ("results in run" in output) == (times == 1)
     assert (tmp_path / "run" / "summary.json").exists() == (times == 1)
+
+
+def test_a_station_whose_run_is_over_writes_its_tables_first(
+    start: Start, listening_port: Callable[["subprocess.Popen[str]"], str], tmp_path: Path
+) -> None:
+    """From what it heard, when that is all: which took seconds, and was cut short."""
+    options = ("fig6", "--duration", "40")
+    gateway = start("gateway", *options, "--endpoint", "udpin://127.0.0.1:0", "--out", "run")
+    link = ("--endpoint", f"udpout://127.0.0.1:{listening_port(gateway)}")
+    station = start("controller", *options, *link, "--out", "heard")
+    wait_for_rows(tmp_path / "heard" / "trace.csv")
+    station.send_signal(signal.SIGTERM)
+    _, errors = station.communicate(timeout=30)
+    assert (station.returncode, gateway.wait(30)) == (130, 0)
+    assert "writing the results; one more interrupt leaves without them" in errors
+    summary = json.loads((tmp_path / "heard" / "summary.json").read_text())
+    assert (summary["outcome"], summary["ticks"]) == ("completed", 4000)
+    assert_whole(tmp_path / "heard" / "trace.csv")

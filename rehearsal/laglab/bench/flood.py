@@ -89,7 +89,7 @@ def _timing(scenario: Scenario, flooded: bool) -> TimingReport:
             Patience(silence=PATIENT),
             robot.watch([watch]),
         )
-        timing = whole(serve_alone(robot, around)).timing
+        timing = whole(serve_alone(robot, around, stack)).timing
     assert timing is not None, "it was paced by the clock"
     return timing
 

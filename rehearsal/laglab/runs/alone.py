@@ -1,8 +1,10 @@
 """One side of a run alone: the other one is somebody else's."""
 
-from contextlib import closing
+from collections.abc import Iterator
+from contextlib import ExitStack, closing, contextmanager
 from dataclasses import replace
 
+from laglab.interrupts import WRITING, put_off
 from laglab.runs.clock import LoopClock
 from laglab.runs.ending import Ending
 from laglab.runs.errors import CUT_SHORT, SIDE_ERRORS
@@ -13,8 +15,9 @@ from laglab_protocol import EndReason, Listener, SettingsError
 from laglab_station import Onlooker, Station, run_station
 
 
-def serve_alone(robot: OpenRobot, around: Surroundings) -> Ending:
-    """The robot's side to the end, its record closed; what breaks is in the ending."""
+def serve_alone(robot: OpenRobot, around: Surroundings, last: ExitStack) -> Ending:
+    """The robot's side to the end, its record closed; what breaks is in the ending. From the end of
+    the loop until `last` is closed an interrupt waits."""
     clock = LoopClock(around.progress)
     warnings: list[str] = []
 
@@ -23,7 +26,7 @@ def serve_alone(robot: OpenRobot, around: Surroundings) -> Ending:
         around.warn(text)
 
     try:
-        with short_pauses(), closing(around.recorder):
+        with closing(around.recorder), _heard_until_over(last):
             served = robot.serve(replace(around, progress=clock, warn=warn))
     except SIDE_ERRORS as error:
         so_far = robot.so_far()
@@ -44,19 +47,15 @@ def answer_alone(
     silence_timeout: float,
     onlooker: Onlooker,
     clock: LoopClock,
+    last: ExitStack,
 ) -> Ending:
     """The station's side to the end, the onlooker closed, which tells the clock of every tick; what
-    breaks is in the ending."""
+    breaks is in the ending. From the end of the loop until `last` is closed an interrupt waits."""
     try:
-        with short_pauses(), closing(onlooker):
-            end = run_station(station, listener, silence_timeout, onlooker)
-    except KeyboardInterrupt:
-        outcome = Outcome(EndReason.INTERRUPTED, station.tick or 0)
+        with closing(onlooker), _heard_until_over(last):
+            outcome = _answered(station, listener, silence_timeout, onlooker)
     except SIDE_ERRORS as error:
         return replace(_cut_short(error, clock, list(station.warnings)), station=station.report())
-    else:
-        known = end.reason in set(EndReason)
-        outcome = Outcome(EndReason(end.reason) if known else EndReason.FAILED, end.tick)
     report = station.report()
     return Ending(
         outcome=outcome,
@@ -64,6 +63,28 @@ def answer_alone(
         station=report,
         warnings=report.warnings,
     )
+
+
+@contextmanager
+def _heard_until_over(last: ExitStack) -> Iterator[None]:
+    """Interrupts end what is within; then they wait for `last`."""
+    try:
+        with short_pauses():
+            yield
+    finally:
+        last.enter_context(put_off(WRITING))
+
+
+def _answered(
+    station: Station, listener: Listener, silence_timeout: float, onlooker: Onlooker
+) -> Outcome:
+    """How the run ended, as the station knows."""
+    try:
+        end = run_station(station, listener, silence_timeout, onlooker)
+    except KeyboardInterrupt:
+        return Outcome(EndReason.INTERRUPTED, station.tick or 0)
+    known = end.reason in set(EndReason)
+    return Outcome(EndReason(end.reason) if known else EndReason.FAILED, end.tick)
 
 
 def _cut_short(error: Exception, clock: LoopClock, warnings: list[str]) -> Ending:

@@ -1,5 +1,6 @@
 """`laglab run`."""
 
+from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
 from typing import Annotated
@@ -19,6 +20,7 @@ from laglab.commands.runs.live import LiveOption, OpenOption, shown_live
 from laglab.commands.runs.verdict import conclude
 from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, SEEING, require
+from laglab.interrupts import WRITING, put_off
 from laglab.progress import progress_of
 from laglab.results.complete import Way
 from laglab.results.place import place, withdrawn_unless_begun
@@ -67,11 +69,13 @@ def run(
     way = Way("both", transport, plant or scenario.plant.called)
     with shown_live(scenario, way, live, open_) as page:
         directory = place(scenario, out, force)
-        with withdrawn_unless_begun(directory):
+        with withdrawn_unless_begun(directory), ExitStack() as last:
             with progress_of(scenario) as told:
                 setup = replace(setup, live=page.line if page else None)
                 ending = run_into(directory, scenario, transport, told, setup)
-            conclude(scenario, way, ending, directory, report, page)
+                last.enter_context(put_off(WRITING))
+            code = conclude(scenario, way, ending, directory, report, page)
+    raise typer.Exit(code)
 
 
 def _parts(scenario: Scenario) -> str:

@@ -103,6 +103,7 @@ def gateway(
         page = stack.enter_context(shown_live(scenario, way, live, open_))
         directory = place(scenario, out, force)
         stack.enter_context(withdrawn_unless_begun(directory))
+        last = stack.enter_context(ExitStack())
         if said := wrapped_replay(scenario):
             say(said)
         _say_whom_we_wait_for("the controller", link)
@@ -122,8 +123,9 @@ def gateway(
                 lambda tick: told(tick, now()),
                 _warn,
             )
-            ending = serve_alone(robot, around)
-        conclude(scenario, way, ending, directory, report, page)
+            ending = serve_alone(robot, around, last)
+        code = conclude(scenario, way, ending, directory, report, page)
+    raise typer.Exit(code)
 
 
 @contextmanager
@@ -152,6 +154,7 @@ def controller(
             page = stack.enter_context(shown_live(scenario, way, live, open_))
             directory = place(scenario, out, force, suffix="-station")
             stack.enter_context(withdrawn_unless_begun(directory))
+            last = stack.enter_context(ExitStack())
             _say_whom_we_wait_for("the robot", link)
             with progress_of(scenario) as told:
                 glance = StationGlance(scenario) if scenario.pace == "realtime" else None
@@ -159,5 +162,8 @@ def controller(
                 record = StationRecord(directory, scenario.sample_time, _warn, clock, glance)
                 onlooker = watched_station(record, page.line if page else None, station, link)
                 listener = Listener(link, receiver)
-                ending = answer_alone(station, listener, scenario.silence_timeout, onlooker, clock)
-            conclude(scenario, way, ending, directory, report, page)
+                ending = answer_alone(
+                    station, listener, scenario.silence_timeout, onlooker, clock, last
+                )
+            code = conclude(scenario, way, ending, directory, report, page)
+    raise typer.Exit(code)

@@ -3,12 +3,8 @@
 import sys
 from importlib.util import find_spec
 from pathlib import Path
-from typing import NoReturn
-
-import typer
 
 from laglab.errors import RefusedError, ResultsError, RunError
-from laglab.interrupts import put_off
 from laglab.live import LivePage
 from laglab.results.complete import Way, complete
 from laglab.results.place import REPORT_FILE
@@ -26,18 +22,16 @@ def conclude(
     directory: Path,
     report: bool = False,
     page: LivePage | None = None,
-) -> NoReturn:
-    """Say at once what broke, if something did; write the results and show them, for which an
-    interrupt waits; end with the run's exit code. Raises ResultsError, and KeyboardInterrupt for a
-    run that never began."""
+) -> int:
+    """Say at once what broke, if something did; write the results and show them; the exit code.
+    Raises ResultsError, and KeyboardInterrupt for a run that never began."""
     if ending.problem:
         print(f"laglab: {ending.problem}", file=sys.stderr, flush=True)
         _tell(page, ending.problem)
     try:
-        with put_off():
-            run = complete(scenario, way, ending, directory)
-            _tell(page, run.summary.verdict)
-            _show(run)
+        run = complete(scenario, way, ending, directory)
+        _tell(page, run.summary.verdict)
+        _show(run)
         if report:
             report_on(run)
     except (RefusedError, RunError):
@@ -47,7 +41,7 @@ def conclude(
         if not ending.problem:
             raise
         say(f"warning: {error}")
-    raise typer.Exit(ending.exit_code)
+    return ending.exit_code
 
 
 def _tell(page: LivePage | None, verdict: str) -> None:
