@@ -181,9 +181,7 @@ class Station:
     def stop_robot(self) -> list[bytes]:
         """The frames that have the robot stand still for good, to be said again until it does;
         none before it was heard."""
-        if self._robot is None:
-            return []
-        return self._framed([emergency_stop_for(*self._robot)])
+        return self._framed([emergency_stop_for(*self._robot)] if self._robot else [])
 
     @property
     def robot_stopped(self) -> bool:
@@ -263,6 +261,7 @@ class Station:
         """A robot that is new to us at this tick."""
         self._look_back()
         self._hearing.begin_anew()
+        self._warnings.met(tick, self.tick)
         if tick or self.tick is not None:
             self._driver.tick = None  # if its driver cannot be made, it was never answered
             driver = Driver(self._config, self._make_controller, self._alarms, tick)

@@ -2,6 +2,8 @@
 
 from laglab_protocol import MAV_SEVERITY_EMERGENCY, MAV_SEVERITY_ERROR, Statustext
 
+BEGUN_AGAIN = "the robot has begun again"
+
 MOST_TOLD = 20
 """At most so many texts of the robot's are kept: it may say whatever it likes."""
 
@@ -18,6 +20,11 @@ class Warnings:
     def add(self, about: str, text: str) -> None:
         """Put a warning on record, unless there is one about this already."""
         self._texts.setdefault(about, text)
+
+    def met(self, tick: int, last: int | None) -> None:
+        """A robot at `tick` that is new, behind the one that said `last`."""
+        if last is not None and tick <= last:
+            self.add(BEGUN_AGAIN, BEGUN_AGAIN)
 
     def hear(self, told: Statustext, tick: int) -> None:
         """What the robot itself says after its `tick`, if it is worse than a warning."""

@@ -165,7 +165,7 @@ def test_a_robot_that_begins_again_is_met_anew(
     second = start("gateway", *options, "--endpoint", robot_url, "--out", "second")
     assert "converged: at the end" in ended(second, 0)
     assert last_tick(tmp_path / "second") == 2000
-    ended(station, 0)
+    assert "warning: the robot has begun again" in ended(station, 0)
 
 
 @pytest.mark.slow
@@ -205,7 +205,7 @@ def test_a_displaced_station_is_told_and_can_come_back(
     ended(third, 130)
     assert "warning: another station has taken over" in ended(gateway, 130)
     second.kill()
-    assert "the robot says: another station has taken over" in second.communicate()[1]
+    assert "taken over" not in second.communicate()[1], "it is the other one"
 
 
 def test_an_end_ends_no_gateway_that_waits_and_no_run_that_it_is_not_of(

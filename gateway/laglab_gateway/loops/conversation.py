@@ -70,7 +70,7 @@ class Conversation:
         self._watch = around.watch or Watch(gateway.services, [])
         self._heard, self._heard_tick = self.now(), 0
         self._settings: Settings | None = None
-        self._told = {TAKEN_OVER}
+        self._told: set[str] = set()
         self._askers = Askers()
         self._begun = False
         self._closed: list[_Closed] = []
@@ -167,7 +167,7 @@ class Conversation:
                 link.send(self._gateway.end(EndReason.DISPLACED), to=link.sender)
                 return [frame for frame in frames if not from_station(frame)]
             self._around.warn(TAKEN_OVER)
-            self._gateway.announce(TAKEN_OVER, MAV_SEVERITY_ERROR)
+            self._watch.tell([Statustext(MAV_SEVERITY_ERROR, TAKEN_OVER.encode())])
             link.send(self._gateway.end(EndReason.DISPLACED))
         link.accept_peer()
         self._heard, self._heard_tick = now, self._gateway.tick

@@ -16,6 +16,7 @@ from laglab_gateway import (
     standard_parameters,
 )
 from laglab_protocol import (
+    MAV_SEVERITY_ERROR,
     ROBOT_COMPONENT,
     STATION_COMPONENT,
     STATION_SYSTEM,
@@ -136,6 +137,8 @@ def test_a_robot_that_begins_again_brings_nothing_out_of_order() -> None:
     assert [row.time for row in rig.rows] == pytest.approx(np.arange(60) * TS)
     report = rig.relay.audit.report()
     assert (report.command.reordered, report.measurement.reordered) == (0, 0)
+    said = [(each.severity, each.text) for each in rig.relay.take_notices()]
+    assert (MAV_SEVERITY_ERROR, b"the robot has begun again") in said, "nobody may overlook it"
 
 
 def test_what_a_robot_did_before_it_began_again_is_nobodys_answer() -> None:
