@@ -114,6 +114,16 @@ def test_a_scenario_can_be_handed_over_and_overridden() -> None:
     assert laglab.run(scenario).summary.ticks == 20
     assert laglab.run(scenario, {"duration": 0.3}).summary.ticks == 30
     assert scenario.duration == 0.2
+    link, events = {"command_delay": 3}, [{"at": 1.0, "by": np.array([0.1, 0.0, 0.0])}]
+    overrides = {
+        "link": link,
+        "plant.event": events,
+        "link.command_delay": 4,
+        "plant.event.0.at": 2.0,
+    }
+    changed = laglab.load("fig6", overrides)
+    assert (changed.link.command_delay, changed.plant.event[0].at) == (4, 2.0)
+    assert (link["command_delay"], events[0]["at"]) == (3, 1.0), "they are the caller's"
 
 
 def test_what_is_wrong_is_said_by_an_error_of_ours(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+import tomllib
 import tracemalloc
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -179,6 +180,29 @@ def test_from_python_with_any_executor(tmp_path: Path) -> None:
     assert result.map("estimator.kind", "seed", "converged").to_numpy().max() == 0.0
     with pytest.raises(StudyError, match="no column 'nonsense'"):
         result.map("nonsense", "seed", "rms_x")
+
+
+TABLES = """
+scenario = "lab"
+[grid]
+duration = [0.3]
+"link.command" = [{ loss = 0.3 }]
+"link.command.extra_delay.mean" = [0.0, 0.03]
+"plant.event" = [[{ at = 0.1, by = [0.1, 0, 0] }, { at = 0.2, by = [0.1, 0, 0] }], []]
+"""
+
+
+def test_tables_in_a_grid_stay_what_they_are(tmp_path: Path) -> None:
+    (tmp_path / "tables.toml").write_text(TABLES)
+    out = tmp_path / "out"
+    study = load_study(str(tmp_path / "tables.toml"))
+    with ThreadPoolExecutor(1) as threads:
+        frame = lab.sweep(study, out=out, executor=threads).to_pandas()
+    assert set(frame["link.command"]) == {"{loss = 0.3}"}
+    events = {str(tomllib.loads(f"event = {text}")["event"]) for text in frame["plant.event"]}
+    assert events == {"[{'at': 0.1, 'by': [0.1, 0, 0]}, {'at': 0.2, 'by': [0.1, 0, 0]}]", "[]"}
+    again = load_study(str(tmp_path / "tables.toml"))
+    assert not work_left(again, folder=Folder.made(out, again)).runs
 
 
 def test_from_a_plain_script_processes_of_our_own(tmp_path: Path) -> None:

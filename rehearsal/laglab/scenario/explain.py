@@ -22,11 +22,8 @@ def spelled(value: object) -> str:
     """As in a file; None is a key that is not set."""
     if value is None:
         return NOT_SET
-    if isinstance(value, dict):
-        table = tomlkit.inline_table()
-        table.update(plain(value))
-        return str(table.as_string())
-    return str(tomlkit.item(plain(value)).as_string())
+    within = tomlkit.item([[plain(value)]])  # where tables stand in a line
+    return str(within.as_string())[2:-2]
 
 
 def _table(row: Row) -> str:

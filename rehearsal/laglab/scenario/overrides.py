@@ -51,7 +51,10 @@ def put(fields: dict[str, Any], key: str, value: object) -> None:
 
 
 def of_python(value: Any) -> Any:
-    """Of numpy's numbers and arrays what Python has for them."""
+    """A copy, for other keys may be put into it; of numpy's numbers and arrays what Python has for
+    them."""
+    if isinstance(value, Mapping):
+        return {key: of_python(each) for key, each in value.items()}
     if isinstance(value, list | tuple):
         return list(map(of_python, value))
     return value.tolist() if hasattr(value, "tolist") else value

@@ -80,7 +80,8 @@ def study_of(
         problem = error.errors()[0]
         place = ".".join(str(part) for part in problem["loc"] if isinstance(part, str))
         unknown = problem["type"] == "extra_forbidden"
-        known = ", ".join(name for name in _File.model_fields if name != "origin")
+        of = _Start if "start" in problem["loc"] else _File
+        known = ", ".join(name for name in of.model_fields if name != "origin")
         said = f"unknown key; known here: {known}" if unknown else wording(problem)
         raise StudyError(f"{called}: {place}: {said}" if place else f"{called}: {said}") from None
     except StudyError as error:
