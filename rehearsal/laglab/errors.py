@@ -69,3 +69,7 @@ class RunError(LaglabError):
     """A run was cut short: a process or the link died."""
 
     exit_code = 4
+
+
+class WorkerDiedError(RunError):
+    """Whoever did a job died of it, each time."""

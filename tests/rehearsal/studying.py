@@ -24,6 +24,29 @@ SEEDS = 3
 CELLS = 16
 DURATION = 1.0
 SHORT = ("--set", f"duration={DURATION}")
+DEADLY = """
+import os
+
+from laglab_control import Ekf
+
+class Deadly(Ekf):
+    def __init__(self, model, at=0):
+        super().__init__(model)
+        self.at = at
+    def predict(self, state, u):
+        self.at -= 1
+        if self.at == 0:
+            os._exit(3)
+        return super().predict(state, u)
+"""
+MORTAL = """
+scenario = "lab"
+[grid]
+duration = [0.2]
+"link.command_delay" = [0, 1]
+"estimator.kind" = ["own:Deadly"]
+"estimator.options.at" = [10, 500]
+"""
 
 Contents = dict[str, bytes]
 Marks = dict[str, tuple[int, int]]
@@ -34,6 +57,12 @@ def undisturbed(path: Path) -> Contents:
     cells = tuple(load_study(str(path), {"duration": DURATION}).cells())
     contents = done(Task(cells, code_version()))
     return {f"{cell.key}.parquet": each for cell, each in zip(cells, contents, strict=True)}
+
+
+def write_deadly_study(folder: Path) -> None:
+    """`mortal.toml`: two of its four runs end whoever makes them."""
+    (folder / "own.py").write_text(DEADLY)
+    (folder / "mortal.toml").write_text(MORTAL)
 
 
 def there(folder: Path) -> Marks:

@@ -31,8 +31,6 @@ WRONG = {
     "[start]\nradius = -3.0": "start.radius: must be above 0",
     "[start]\nradius = 2000.0": "start.radius: must be 1000 or less",
     "[start]\nradius = 1.0\nx = 2.0": "start.x: unknown key; known here: radius",
-    '[grid]\n"link.command.loss" = [0.1]\n"link.command" = [{}]': "grid: link.command: would take "
-    "the place of link.command.loss",
     "sedes = 3": "sedes: unknown key; known here: scenario, description, seeds, grid, start",
     'also = ["alarms"]': "also: 'alarms' is none of alarm_s, alarm_error",
     "also = [3]": "also",

@@ -22,6 +22,7 @@ from .studying import (
     nothing_again,
     undisturbed,
     wait_for_cells,
+    write_deadly_study,
 )
 
 Start = Callable[..., "subprocess.Popen[str]"]
@@ -154,6 +155,20 @@ def test_a_cluster_of_our_own_ends_with_us(
     assert not errors
     assert f"{CELLS * SEEDS} runs" in output
     assert contents(tmp_path / "out") == expected
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(300)
+def test_a_run_that_kills_its_worker_costs_the_others_nothing(
+    laglab: Callable[..., "subprocess.CompletedProcess[str]"], tmp_path: Path
+) -> None:
+    """As without a cluster; dask gives it up at the fourth."""
+    write_deadly_study(tmp_path)
+    swept = laglab("sweep", "mortal.toml", "--scheduler", "local", "--workers", "2", "--out", "out")
+    assert swept.returncode == 4
+    assert "options.at = 10: Attempted to run task" in swept.stderr
+    assert "and 1 more such" in swept.stderr
+    assert len(contents(tmp_path / "out")) == 2
 
 
 def test_a_scheduler_that_is_not_there_is_one_line(cluster: Cluster, tmp_path: Path) -> None:

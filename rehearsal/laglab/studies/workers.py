@@ -11,7 +11,7 @@ from typing import Any, Protocol, Self, TypeVar
 
 from msgspec import Struct
 
-from laglab.errors import RunError
+from laglab.errors import RunError, WorkerDiedError
 from laglab.runs.processes.answers import answer_all
 from laglab.runs.processes.child import LOOK_UP, Child, Inbox, Tell, started
 from laglab.runs.processes.reports import Computed, Ended, Failed
@@ -140,7 +140,7 @@ def _given_up(asked: _Asked, how: str) -> bool:
     asked.deaths += 1
     if asked.deaths < MOST_DEATHS:
         return False
-    asked.future.set_exception(RunError(f"{how}, three times at the same job"))
+    asked.future.set_exception(WorkerDiedError(f"{how}, three times at the same job"))
     return True
 
 

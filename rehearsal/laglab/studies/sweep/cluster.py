@@ -4,6 +4,7 @@ import asyncio
 import logging
 import signal
 import socket
+import sys
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from multiprocessing import resource_tracker
@@ -45,6 +46,12 @@ def cluster(address: str, workers: int = 0) -> Iterator[Executor]:
             raise _nobody(address) from error
         stack.enter_context(client)
         yield client.get_executor(pure=False)
+
+
+def is_killed_worker(error: BaseException) -> bool:
+    """Whether dask has given a job up at which several of its workers died."""
+    distributed = sys.modules.get("distributed")
+    return distributed is not None and isinstance(error, distributed.KilledWorker)
 
 
 def _look_for(address: str) -> None:

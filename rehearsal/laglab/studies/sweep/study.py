@@ -52,8 +52,6 @@ class Study:
         object.__setattr__(self, "grid", {key: _axis(key, self.grid[key]) for key in self.grid})
         if "seed" in self.grid:
             raise StudyError("grid: seed: the seeds of a study are said by `seeds`")
-        for number, key in enumerate(self.grid):
-            _refuse_to_replace(list(self.grid)[:number], key)
         if self.radius is not None and any(key.split(".")[0] == "start" for key in self.grid):
             raise StudyError(
                 "grid: start: [start] gives every seed a start of its own: leave one out"
@@ -147,12 +145,6 @@ def _seeds(seeds: Sequence[int]) -> Sequence[int]:
         if type(seed) is not int or not 0 <= seed < MOST_SEED:
             raise StudyError(f"seeds: must be whole, 0 or more and below 2^31, not {seed!r}")
     return kept
-
-
-def _refuse_to_replace(before: Sequence[str], key: str) -> None:
-    """A table that comes after a key of its own. Raises: StudyError."""
-    if inside := next((each for each in before if each.startswith(f"{key}.")), None):
-        raise StudyError(f"grid: {key}: would take the place of {inside}: put it before that")
 
 
 def _axis(key: str, values: Sequence[object]) -> tuple[object, ...]:

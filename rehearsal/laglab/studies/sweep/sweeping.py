@@ -1,16 +1,17 @@
 """A study, computed: every cell that is not there yet, by whoever does jobs."""
 
 from collections.abc import Callable, Iterable
-from concurrent.futures import CancelledError
+from concurrent.futures import CancelledError, Future
 from contextlib import nullcontext
 from pathlib import Path
 from tempfile import mkdtemp
 
-from laglab.errors import LaglabError, RunError
+from laglab.errors import LaglabError, RunError, WorkerDiedError
 from laglab.progress import progress_of_study
 from laglab.studies.sweep.cells.cell import Cell
-from laglab.studies.sweep.cells.tasks import done, grouped
+from laglab.studies.sweep.cells.tasks import Task, done, grouped, one_by_one
 from laglab.studies.sweep.cells.ways import seconds
+from laglab.studies.sweep.cluster import is_killed_worker
 from laglab.studies.sweep.folder import Folder
 from laglab.studies.sweep.loading import load_study
 from laglab.studies.sweep.result import StudyResult
@@ -18,6 +19,7 @@ from laglab.studies.sweep.study import Study
 from laglab.studies.sweep.work import Work, checked_work
 from laglab.studies.workers import Executor, Processes, as_done
 
+Contents = list[bytes | str]
 AHEAD = 512
 """Tasks that are handed out at once: as many as a large cluster has hands, and no more, so that
 memory always has room."""
@@ -73,25 +75,40 @@ def compute(
     Raises: RunError, ResultsError. What had been done until then stays.
     """
     failed: list[str] = []
-    for task, future in as_done(executor, done, grouped(cells), AHEAD):
-        try:
-            contents = future.result()
-        except LaglabError:
-            raise
-        except (Exception, CancelledError) as error:  # whatever an executor may say
-            raise RunError(
-                f"{name}: whoever was to do the rest failed or is gone ({error!r}): what is "
-                "done is kept, and the same command goes on from there"
-            ) from error
-        for cell, content in zip(task.cells, contents, strict=True):
-            if isinstance(content, str):
-                failed.append(content)
+    deadly: list[Task] = []
+    for tasks in (grouped(cells), deadly):  # the second is filled while the first is done
+        for task, future in as_done(executor, done, tasks, AHEAD):
+            contents = _contents(name, task, future)
+            if contents is None:
+                deadly += one_by_one(task)
                 continue
-            folder.keep(cell, content)
-            told(len(cell.seeds), seconds(cell))
+            for cell, content in zip(task.cells, contents, strict=True):
+                if isinstance(content, str):
+                    failed.append(content)
+                    continue
+                folder.keep(cell, content)
+                told(len(cell.seeds), seconds(cell))
     if failed:
         others = f" (and {len(failed) - 1} more such)" if failed[1:] else ""
         raise RunError(
             f"{name}: {failed[0]}{others}: all else that is done is kept, and the same "
             "command goes on from there"
         )
+
+
+def _contents(name: str, task: Task, future: "Future[Contents]") -> Contents | None:
+    """What a task came to; None where whoever did it died, and one of several cells may be why."""
+    try:
+        return future.result()
+    except (Exception, CancelledError) as error:  # whatever an executor may say
+        died = isinstance(error, WorkerDiedError) or is_killed_worker(error)
+        if died and task.cells[1:]:
+            return None
+        if died:
+            return [f"{task.cells[0].place}: {error}"]
+        if isinstance(error, LaglabError):
+            raise
+        raise RunError(
+            f"{name}: whoever was to do the rest failed or is gone ({error!r}): what is "
+            "done is kept, and the same command goes on from there"
+        ) from error

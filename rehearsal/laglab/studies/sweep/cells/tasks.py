@@ -43,7 +43,8 @@ def done(task: Task) -> list[bytes | str]:
     """Wherever it is done: each cell's table, as the contents of a Parquet file; or why a run of it
     failed.
 
-    The same bytes for the same cell, as far as pyarrow is the same. Raises RunError.
+    The same bytes for the same cell, as far as pyarrow is the same. Raises RunError: the code is
+    another one.
     """
     if task.code != code_version():
         raise RunError(
@@ -54,7 +55,15 @@ def done(task: Task) -> list[bytes | str]:
     except RunError as error:
         if len(task.cells) == 1:
             return [str(error)]
-    return [each for cell in task.cells for each in done(Task((cell,), task.code))]
+    except Exception as error:  # of what others brought, and nobody foresaw
+        if len(task.cells) == 1:
+            return [f"{task.cells[0].place}: {error!r}"]
+    return [each for one in one_by_one(task) for each in done(one)]
+
+
+def one_by_one(task: Task) -> list[Task]:
+    """The same, a task a cell."""
+    return [Task((cell,), task.code) for cell in task.cells]
 
 
 def _file(table: pa.Table) -> bytes:
