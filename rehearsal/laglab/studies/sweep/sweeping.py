@@ -1,6 +1,6 @@
 """A study, computed: every cell that is not there yet, by whoever does jobs."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import CancelledError, Future
 from contextlib import nullcontext
 from pathlib import Path
@@ -75,19 +75,13 @@ def compute(
     Raises: RunError, ResultsError. What had been done until then stays.
     """
     failed: list[str] = []
-    deadly: list[Task] = []
-    for tasks in (grouped(cells), deadly):  # the second is filled while the first is done
-        for task, future in as_done(executor, done, tasks, AHEAD):
-            contents = _contents(name, task, future)
-            if contents is None:
-                deadly += one_by_one(task)
+    for task, contents in _answers(name, grouped(cells), executor):
+        for cell, content in zip(task.cells, contents, strict=True):
+            if isinstance(content, str):
+                failed.append(content)
                 continue
-            for cell, content in zip(task.cells, contents, strict=True):
-                if isinstance(content, str):
-                    failed.append(content)
-                    continue
-                folder.keep(cell, content)
-                told(len(cell.seeds), seconds(cell))
+            folder.keep(cell, content)
+            told(len(cell.seeds), seconds(cell))
     if failed:
         others = f" (and {len(failed) - 1} more such)" if failed[1:] else ""
         raise RunError(
@@ -96,18 +90,36 @@ def compute(
         )
 
 
-def _contents(name: str, task: Task, future: "Future[Contents]") -> Contents | None:
-    """What a task came to; None where whoever did it died, and one of several cells may be why."""
+def _answers(
+    name: str, tasks: Iterable[Task], executor: Executor
+) -> Iterator[tuple[Task, Contents]]:
+    """Of all, as they are done. Those whose worker died are done once more at the end, cell by
+    cell and one at a time: so it is seen which of them it dies of."""
+    suspects: list[Task] = []
+    for task, future in as_done(executor, done, tasks, AHEAD):
+        try:
+            contents = _contents(name, future)
+        except WorkerDiedError:
+            suspects += one_by_one(task)
+        else:
+            yield task, contents
+    for task, future in as_done(executor, done, suspects, ahead=1):
+        try:
+            contents = _contents(name, future)
+        except WorkerDiedError as error:
+            contents = [f"{task.cells[0].place}: {error}"]
+        yield task, contents
+
+
+def _contents(name: str, future: "Future[Contents]") -> Contents:
+    """What a task came to. Raises WorkerDiedError, and RunError: whoever does the work is gone."""
     try:
         return future.result()
+    except LaglabError:
+        raise
     except (Exception, CancelledError) as error:  # whatever an executor may say
-        died = isinstance(error, WorkerDiedError) or is_killed_worker(error)
-        if died and task.cells[1:]:
-            return None
-        if died:
-            return [f"{task.cells[0].place}: {error}"]
-        if isinstance(error, LaglabError):
-            raise
+        if is_killed_worker(error):
+            raise WorkerDiedError(str(error)) from error
         raise RunError(
             f"{name}: whoever was to do the rest failed or is gone ({error!r}): what is "
             "done is kept, and the same command goes on from there"
