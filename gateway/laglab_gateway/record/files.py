@@ -37,13 +37,16 @@ R = TypeVar("R")
 class _File(Generic[R]):
     """A file, and the records that go there with the next flush."""
 
-    def __init__(self, path: Path, header: bytes, encode: Callable[[list[R]], bytes]) -> None:
+    def __init__(
+        self, path: Path, place: Path, header: bytes, encode: Callable[[list[R]], bytes]
+    ) -> None:
+        """`path` is how the file is called; it lies in the folder `place`."""
         self.waiting: list[R] = []
         self._path = path
         self._encode = encode
         self._size = 0
         try:
-            self._file = FileIO(path, "w")
+            self._file = FileIO(place / path.name, "w")
         except OSError as error:
             raise TraceError(f"cannot record {path}: {error.strerror}") from error
         self._write(header)
@@ -86,8 +89,8 @@ ROWS: dict[str, type[Row]] = {
 """The rows of the files that are only made when there is something to say."""
 
 
-def _csv(path: Path, fields: tuple[str, ...]) -> _File[Row]:
-    return _File(path, csv_header(fields), csv_lines)
+def _csv(path: Path, place: Path, fields: tuple[str, ...]) -> _File[Row]:
+    return _File(path, place, csv_header(fields), csv_lines)
 
 
 class FileRecorder(Recorder):
@@ -103,15 +106,19 @@ class FileRecorder(Recorder):
     def __init__(self, directory: Path) -> None:
         """Raises: TraceError, when the directory cannot be written."""
         self._directory = directory
+        self._place = directory.absolute()  # whoever runs beside us may change the folder
         try:
             directory.mkdir(parents=True, exist_ok=True)
             for stale in ROWS:
                 (directory / stale).unlink(missing_ok=True)
         except OSError as error:
             raise TraceError(f"cannot record into {directory}: {error.strerror}") from error
-        self._trace = _csv(directory / TRACE_FILE, TraceRow._fields)
+        self._trace = _csv(directory / TRACE_FILE, self._place, TraceRow._fields)
         self._tlog = _File[tuple[int, bytes]](
-            directory / TLOG_FILE, b"", lambda records: b"".join(starmap(tlog_record, records))
+            directory / TLOG_FILE,
+            self._place,
+            b"",
+            lambda records: b"".join(starmap(tlog_record, records)),
         )
         self._written = -math.inf
         self._others: dict[str, _File[Row]] = {}
@@ -142,7 +149,7 @@ class FileRecorder(Recorder):
 
     def _keep(self, name: str, rows: Iterable[Row]) -> None:
         if name not in self._others:
-            self._others[name] = _csv(self._directory / name, ROWS[name]._fields)
+            self._others[name] = _csv(self._directory / name, self._place, ROWS[name]._fields)
         self._others[name].waiting += rows
 
     def flush(self) -> None:

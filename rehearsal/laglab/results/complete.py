@@ -28,6 +28,7 @@ from laglab.results.shadows import (
 from laglab.results.station import decoded
 from laglab.results.summary import Errors, Final, Following, Side, Summary, write_summary
 from laglab.runs.ending import Ending
+from laglab.runs.staying import staying
 from laglab.scenario import Scenario
 from laglab.version import laglab_version, versions
 from laglab_gateway import (
@@ -78,9 +79,9 @@ def complete(
             withdraw(directory)
         raise why from None
     failed: list[str] = []
-    compared = {
-        name: _shadowed(scenario, name, directory, failed) for name in scenario.estimator.compare
-    }
+    names = scenario.estimator.compare
+    with staying():
+        compared = {name: _shadowed(scenario, name, directory, failed) for name in names}
     ending = ending.warned(failed)
     following = followed(trace_pieces(directory / TRACE_FILE), scenario.target, numbers.rows)
     summary = summarise(scenario, way, ending, numbers, compared, following)
@@ -141,6 +142,7 @@ def nothing_recorded(ending: Ending, otherwise: str) -> BaseException:
 
 
 def _shadowed(scenario: Scenario, name: str, directory: Path, failed: list[str]) -> Errors | None:
+    directory = directory.absolute()  # wherever the filter leads us meanwhile
     rows = until_it_fails(
         shadow_rows(scenario, name, read_session(directory / TLOG_FILE)), failed.append
     )

@@ -10,6 +10,7 @@ from laglab.runs.ending import Ending
 from laglab.runs.errors import CUT_SHORT, SIDE_ERRORS
 from laglab.runs.pauses import short_pauses
 from laglab.runs.robot_side import OpenRobot
+from laglab.runs.staying import staying
 from laglab_gateway import Outcome, Surroundings
 from laglab_protocol import EndReason, Listener, SettingsError
 from laglab_station import Onlooker, Station, run_station
@@ -69,7 +70,7 @@ def answer_alone(
 def _heard_until_over(last: ExitStack) -> Iterator[None]:
     """Interrupts end what is within; then they wait for `last`."""
     try:
-        with short_pauses():
+        with short_pauses(), staying():
             yield
     finally:
         last.enter_context(put_off(WRITING))

@@ -30,6 +30,7 @@ from laglab.runs.processes.reports import (
 )
 from laglab.runs.robot_side import OpenRobot, Setup, open_robot
 from laglab.runs.station_side import make_station
+from laglab.runs.staying import staying
 from laglab.runs.waiting import START
 from laglab.scenario import Scenario
 from laglab_control import Controller
@@ -72,11 +73,12 @@ def rehearse_inline(
             Codec(STATION_SYSTEM, STATION_COMPONENT, setup.key) as codec,
             fed(recorder, setup.live, robot.controls) as told,
         ):
-            station = make_station(scenario, codec.sender, controller)
+            with staying():
+                station = make_station(scenario, codec.sender, controller)
             link = InlineLink(station, codec.receiver)
             listener = Listener(link, robot.codec.receiver)
             around = Surroundings(listener, told, progress=clock, warn=warnings.append)
-            with short_pauses():
+            with short_pauses(), staying():
                 served = robot.serve(around)
     except SIDE_ERRORS as error:
         begun = clock.seconds > 0 or isinstance(error, CUT_SHORT)

@@ -3,7 +3,7 @@
 import math
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -13,6 +13,7 @@ import numpy as np
 from laglab.errors import ScenarioError
 from laglab.live import Controls
 from laglab.runs.plant import OpenPlant, open_plant
+from laglab.runs.staying import staying
 from laglab.scenario import Scenario
 from laglab_gateway import (
     DIRECTIONS,
@@ -209,12 +210,13 @@ def open_robot(scenario: Scenario, setup: Setup) -> Iterator[OpenRobot]:
     Raises KeyFileError, ScenarioError; as `open_plant` does; of a real robot EndpointError.
     """
     setup.check()
-    with Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, setup.key) as codec:
+    with Codec(ROBOT_SYSTEM, ROBOT_COMPONENT, setup.key) as codec, ExitStack() as stack:
         if setup.plant is None:
-            with open_plant(scenario) as plant:
-                gateway = make_gateway(scenario, plant, codec.sender, setup.armed)
-                serve = partial(_serve_simulated, scenario, gateway, plant.warnings)
-                yield _opened(gateway, codec, serve, setup)
+            with staying():
+                plant = stack.enter_context(open_plant(scenario))
+            gateway = make_gateway(scenario, plant, codec.sender, setup.armed)
+            serve = partial(_serve_simulated, scenario, gateway, plant.warnings)
+            yield _opened(gateway, codec, serve, setup)
         else:
             if scenario.plant.event:
                 raise UnplaceableError(

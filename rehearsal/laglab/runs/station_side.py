@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from laglab.runs.staying import staying
 from laglab.scenario import Scenario, changed
 from laglab_control import (
     Controller,
@@ -129,4 +130,6 @@ class OpenStation(NamedTuple):
 def open_station(scenario: Scenario, key: Path | None = None) -> Iterator[OpenStation]:
     """The remote station's side, its frames signed with a key."""
     with Codec(STATION_SYSTEM, STATION_COMPONENT, key) as codec:
-        yield OpenStation(make_station(scenario, codec.sender), codec.receiver)
+        with staying():
+            station = make_station(scenario, codec.sender)
+        yield OpenStation(station, codec.receiver)

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from threading import Thread
 
+from laglab.runs.staying import staying
 from laglab_control import PluginError
 
 START = 30.0
@@ -18,7 +19,8 @@ def in_time(name: str, work: Callable[[], object], seconds: float = START) -> No
 
     def done() -> None:
         try:
-            work()
+            with staying():
+                work()
         except BaseException as error:
             raised.append(error)
 

@@ -1,0 +1,73 @@
+"""Somebody's code may change the current folder: the results are where the user said."""
+
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+Start = Callable[..., "subprocess.Popen[str]"]
+Laglab = Callable[..., "subprocess.CompletedProcess[str]"]
+WANDERING = """
+import os
+
+from laglab_control import Ekf
+from laglab_gateway import Reading
+
+AWAY = os.path.dirname(__file__) + "/away"
+
+class Plant:
+    def __init__(self, sample_time, start, seed):
+        os.chdir(AWAY)
+    def read(self):
+        return Reading(*[0.0] * 8)
+    def step(self, v, omega):
+        os.chdir(AWAY)
+    def place(self, x, y, theta):
+        pass
+
+class Filter(Ekf):
+    def __init__(self, model):
+        super().__init__(model)
+        os.chdir(AWAY)
+    def predict(self, state, u):
+        os.chdir(AWAY)
+        return super().predict(state, u)
+"""
+OWN = ("--set", "plant.kind=own:Plant", "--estimator", "own:Filter", "--estimator", "own:Filter")
+
+
+@pytest.fixture
+def away(tmp_path: Path) -> Path:
+    (tmp_path / "own.py").write_text(WANDERING)
+    (tmp_path / "away").mkdir()
+    return tmp_path / "away"
+
+
+@pytest.mark.parametrize("transport", ["inline", "udp"])
+def test_a_run_of_what_goes_elsewhere_stays(
+    laglab: Laglab, tmp_path: Path, away: Path, transport: str
+) -> None:
+    run = laglab("run", "lab", "--duration", "1", *OWN, "--transport", transport, "--out", "run")
+    assert run.returncode == 0, run.stderr
+    assert "results in run\n" in run.stdout
+    there = {path.name for path in (tmp_path / "run").iterdir()}
+    assert {"trace.csv", "arrivals.csv", "claims.csv", "summary.json", "figure.png"} <= there
+    assert not list(away.iterdir())
+
+
+def test_so_do_the_two_sides_alone(
+    start: Start,
+    listening_port: Callable[["subprocess.Popen[str]"], str],
+    tmp_path: Path,
+    away: Path,
+) -> None:
+    options = ("lab", "--duration", "1", *OWN)
+    gateway = start("gateway", *options, "--endpoint", "udpin://127.0.0.1:0", "--out", "robot")
+    link = ("--endpoint", f"udpout://127.0.0.1:{listening_port(gateway)}")
+    station = start("controller", *options, *link, "--out", "station")
+    assert (station.wait(30), gateway.wait(30)) == (0, 0)
+    for side in ("robot", "station"):
+        there = {path.name for path in (tmp_path / side).iterdir()}
+        assert {"trace.csv", "arrivals.csv", "claims.csv", "summary.json", "figure.png"} <= there
+    assert not list(away.iterdir())
