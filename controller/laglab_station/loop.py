@@ -215,7 +215,8 @@ class _Loop:
         self._call_every(0.0)
 
     def _reopen(self, error: FarEndGoneError) -> None:
-        self._station.warn("gone", f"{error}; waiting for it to come back")
+        name = self._link.name
+        self._station.warn("gone", f"{name}: the far end is gone; waiting for it to come back")
         self._look_around()
         deadline = monotonic() + self._silence_timeout
         while monotonic() < deadline:

@@ -187,6 +187,13 @@ def test_resources_that_are_missing_are_told_by_the_fmu(tmp_path: Path, library:
         (Wiring({**WHEELS, "omega_left": "posX"}, POSE), "posX of rover.fmu is no real input"),
         (Wiring(WHEELS, {**POSE, "x": "zzzzzzz"}), "its outputs: posX, posY"),
         (Wiring(WHEELS, {**POSE, "x": "posX[1]"}), r"outputs.x: .* no variable 'posX\[1\]'"),
+        (
+            Wiring({key: "drive.cmd_left" for key in WHEELS}, POSE),
+            "inputs.omega_right: drive.cmd_left is inputs.omega_left already",
+        ),
+        (Wiring(WHEELS, {**POSE, "y": POSE["x"]}), "outputs.y: posX is outputs.x already"),
+        (Wiring(WHEELS, {**POSE, "x": "drive.cmd_left"}), "outputs.x: .* is an input"),
+        (Wiring(WHEELS, POSE, {"x": "posX_0", "y": "posX_0"}), "start.y: .* is start.x already"),
         (Wiring(WHEELS, POSE, {"x": "posx0"}), "start.x: .*did you mean posX_0"),
         (Wiring(WHEELS, POSE, parameters={"base": 1.0}), "parameters: .* wheel.base"),
     ],

@@ -48,6 +48,7 @@ def size(variable: ModelVariable) -> int:
 
 def input_elements(file: FmuFile, names: Mapping[str, str]) -> list[Element]:
     """What the FMU can be told while it runs. Raises WiringError, naming the key."""
+    _refuse_twice("inputs", names)
     found = [_found(file, f"inputs.{ours}", theirs) for ours, theirs in names.items()]
     for ours, element in zip(names, found, strict=True):
         variable = element.variable
@@ -62,9 +63,16 @@ def input_elements(file: FmuFile, names: Mapping[str, str]) -> list[Element]:
 
 def output_elements(file: FmuFile, names: Mapping[str, str]) -> list[Element]:
     """What the FMU can be asked. Raises WiringError, naming the key."""
+    for sensed in (False, True):  # a pose that is measured exactly may stand for both
+        _refuse_twice("outputs", {k: v for k, v in names.items() if k.endswith("_meas") == sensed})
     found = [_found(file, f"outputs.{ours}", theirs) for ours, theirs in names.items()]
     for ours, element in zip(names, found, strict=True):
         kind = element.variable.type
+        if element.variable.causality == "input":
+            raise WiringError(
+                f"outputs.{ours}: {element.name} of {file.path.name} is an input; its outputs: "
+                f"{_listed(file, 'output')}"
+            )
         if kind not in NUMBERS and not kind.lstrip("U").startswith("Int"):
             raise WiringError(
                 f"outputs.{ours}: {element.name} of {file.path.name} is no number, but "
@@ -75,7 +83,17 @@ def output_elements(file: FmuFile, names: Mapping[str, str]) -> list[Element]:
 
 def start_elements(file: FmuFile, names: Mapping[str, str]) -> list[Element]:
     """What the FMU can be told of its start. Raises WiringError, naming the key."""
+    _refuse_twice("start", names)
     return [_found(file, f"start.{ours}", theirs) for ours, theirs in names.items()]
+
+
+def _refuse_twice(table: str, names: Mapping[str, str]) -> None:
+    """Raises WiringError: one variable cannot be two things."""
+    ours: dict[str, str] = {}
+    for key, theirs in names.items():
+        if first := ours.get(theirs):
+            raise WiringError(f"{table}.{key}: {theirs} is {table}.{first} already")
+        ours[theirs] = key
 
 
 def check_parameters(file: FmuFile, values: Mapping[str, Value]) -> None:

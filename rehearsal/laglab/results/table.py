@@ -149,7 +149,7 @@ def warnings(summary: Summary) -> list[str]:
         said += [f"alarm at tick {alarm.tick}: {alarm.cause}" for alarm in alarms]
     if summary.timing and (missed := summary.timing.missed_deadlines):
         said.append(
-            f"{missed} of {summary.ticks} ticks began more than a tick late: this machine "
+            f"{missed} of {summary.ticks + 1} ticks began more than a tick late: this machine "
             "cannot keep up; take a smaller --speed"
         )
     return said

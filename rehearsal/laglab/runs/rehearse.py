@@ -252,5 +252,5 @@ class _Rehearsal:
     def _summed_up(self) -> Ending:
         outcome = self._ending.outcome
         if outcome is not None and outcome.reason is not EndReason.FAILED:
-            return self._ending
+            return self._ending.warned(self._problems)
         return replace(self._ending, problem="; ".join(self._problems))
