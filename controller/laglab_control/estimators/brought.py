@@ -102,12 +102,18 @@ class Brought(Estimator[State]):
         if not self._has("innovation"):
             return None
         answer = self._said("innovation", state)
+        if answer is None:
+            return None
         try:
-            return None if answer is None else Innovation(*answer)
-        except TypeError:
+            value, S = answer
+        except Exception:  # it is no pair, or has an __iter__ of its own
+            value = S = None
+        if not (_is_whole(value, 3) and _is_whole(S, 3, 3)):
             raise self._failed(
-                "innovation", f"a value and its S, or None, not {shown(answer)}"
-            ) from None
+                "innovation",
+                f"None, or a finite array z - h(x) (3,) and its S (3, 3), not {shown(answer)}",
+            )
+        return Innovation(value, S)
 
     def warning(self, state: State) -> str | None:
         """What must not be overlooked."""
@@ -161,13 +167,15 @@ class Brought(Estimator[State]):
             return state
         if not isinstance(x, np.ndarray) or x.ndim != 1 or not _is_finite(x):
             raise self._failed(method, f"a finite array x (d,), not {shown(x)}")
-        if not isinstance(pose, np.ndarray) or pose.shape != (3,) or not _is_finite(pose):
+        if not _is_whole(pose, 3):
             raise self._failed(method, f"a finite pose (3,), not {shown(pose)}")
-        if P is not None and not (
-            isinstance(P, np.ndarray) and P.shape == (len(x), len(x)) and _is_finite(P)
-        ):
+        if P is not None and not _is_whole(P, len(x), len(x)):
             raise self._failed(method, f"a finite P {(len(x), len(x))} or None, not {shown(P)}")
         return state
+
+
+def _is_whole(values: object, *shape: int) -> bool:
+    return isinstance(values, np.ndarray) and values.shape == shape and _is_finite(values)
 
 
 def _is_finite(values: Vector) -> bool:

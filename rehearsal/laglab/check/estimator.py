@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from laglab.results.numbers import pose_difference
 from laglab_control import (
     ESTIMATORS,
     Estimator,
+    Guard,
     Measured,
     RobotModel,
     StampError,
@@ -48,7 +49,7 @@ class Subject(NamedTuple):
 Arrivals = Callable[[int], Sequence[Measured]]
 
 
-def _run(estimator: Estimator[State], record: Record, arrivals: Arrivals) -> list[State]:
+def _run(estimator: Estimator[Any], record: Record, arrivals: Arrivals) -> list[State]:
     """The states of all ticks."""
     state = estimator.correct(estimator.start(record.x.copy(), record.P), arrivals(0), ())
     states = [state]
@@ -86,6 +87,8 @@ def interface(subject: Subject) -> str:
     states = _run(subject.estimator, record, _late(record, 3))
     subject.estimator.innovation(states[-1])
     subject.estimator.ahead(states[-1], list(record.inputs[-3:]))
+    if subject.estimator.is_watchable:
+        _run(Guard(subject.estimator, MODEL), record, _late(record, 3))
     size = len(states[-1].x) if states[-1].x is not None else 0
     return f"a state of {size} components, followed over {TICKS} ticks"
 

@@ -9,10 +9,11 @@ import pytest
 
 @pytest.fixture
 def brought(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """With `mine` and `broken` in it; the current directory."""
-    for name in ("mine.py", "broken.py"):
-        shutil.copy(Path(__file__).with_name(name), tmp_path)
+    """With `mine`, `broken` and `optional` in it; the current directory."""
+    names = ("mine", "broken", "optional")
+    for name in names:
+        shutil.copy(Path(__file__).with_name(f"{name}.py"), tmp_path)
     monkeypatch.chdir(tmp_path)
-    for name in ("mine", "broken"):  # other tests bring others of these names
+    for name in names:  # other tests bring others of these names
         monkeypatch.delitem(sys.modules, name, raising=False)
     return tmp_path
