@@ -1,5 +1,6 @@
 """An estimator that somebody brought: whatever goes wrong in it is said in a line that names it."""
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -17,7 +18,15 @@ from laglab_control.estimators.interface import (
 )
 from laglab_control.estimators.kalman import Innovation
 from laglab_control.model import Matrix, Vector
-from laglab_control.plugins import Maker, called, made, refuse_misfit, shown
+from laglab_control.motion import Way
+from laglab_control.plugins import (
+    Maker,
+    called,
+    in_one_line,
+    made,
+    refuse_misfit,
+    shown,
+)
 from laglab_control.robot import RobotModel, Ways
 
 METHODS = {
@@ -90,12 +99,25 @@ class Brought(Estimator[State]):
 
     def calibrated(self, state: State, robot: Ways) -> Ways:
         """The robot as it is known by now."""
-        ways: Ways = self._said("calibrated", state, robot) if self._has("calibrated") else robot
-        return ways
+        if not self._has("calibrated"):
+            return robot
+        ways: object = self._said("calibrated", state, robot)
+        if ways is robot:
+            return robot
+        if not hasattr(ways, "way"):
+            raise self._failed("calibrated", f"a robot with a method way(u), not {shown(ways)}")
+        return BroughtRobot(f"{self.name}.calibrated", ways)
 
     def learned(self, state: State) -> tuple[Calibration, ...]:
         """What is known of the robot besides its pose."""
-        return tuple(self._said("learned", state)) if self._has("learned") else ()
+        if not self._has("learned"):
+            return ()
+        answer = self._said("learned", state)
+        try:
+            return tuple(_calibration(*each) for each in answer)
+        except Exception:  # whatever is in it
+            wanted = "a name, a finite value and its deviation for each parameter"
+            raise self._failed("learned", f"{wanted}, not {shown(answer)}") from None
 
     def innovation(self, state: State) -> Innovation | None:
         """Of the newest measurement."""
@@ -117,8 +139,12 @@ class Brought(Estimator[State]):
 
     def warning(self, state: State) -> str | None:
         """What must not be overlooked."""
-        said: str | None = self._said("warning", state) if self._has("warning") else None
-        return said
+        said = self._said("warning", state) if self._has("warning") else None
+        if said is None:
+            return None
+        if not isinstance(said, str):
+            raise self._failed("warning", f"a text or None, not {shown(said)}")
+        return in_one_line(said)
 
     @property
     def is_watchable(self) -> bool:
@@ -172,6 +198,39 @@ class Brought(Estimator[State]):
         if P is not None and not _is_whole(P, len(x), len(x)):
             raise self._failed(method, f"a finite P {(len(x), len(x))} or None, not {shown(P)}")
         return state
+
+
+@dataclass(frozen=True, eq=False)
+class BroughtRobot(Ways):
+    """Around what a brought estimator takes the robot for."""
+
+    name: str
+    robot: Any
+
+    def way(self, u: Vector) -> Way[float]:
+        """Raises PluginFailedError when it fails, or is nowhere in the plane."""
+        answer = called(self.name, self.robot, "way", u)
+        try:
+            x, y, theta = map(_finite, answer)
+        except Exception:  # whatever is in it
+            raise PluginFailedError(
+                f"{self.name}.way must answer a finite x, y and theta, not {shown(answer)}"
+            ) from None
+        return Way(x, y, theta)
+
+
+def _calibration(name: object, value: object, deviation: object) -> Calibration:
+    if not (isinstance(name, str) and name.isprintable()):
+        raise TypeError("name")
+    return Calibration(name, _finite(value), _finite(deviation))
+
+
+def _finite(number: Any) -> float:
+    """Raises whatever its own operators do, and ValueError."""
+    taken = float(number * 1.0)  # float() takes a text, too
+    if not math.isfinite(taken):
+        raise ValueError("not finite")
+    return taken
 
 
 def _is_whole(values: object, *shape: int) -> bool:

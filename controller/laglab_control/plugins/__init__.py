@@ -11,7 +11,7 @@ from laglab_control.plugins.finding import (
     plugin_names,
     source_of,
 )
-from laglab_control.plugins.wording import first_line, shown
+from laglab_control.plugins.wording import first_line, in_one_line, shown
 
 __all__ = [
     "Group",
@@ -21,6 +21,7 @@ __all__ = [
     "called",
     "find_plugin",
     "first_line",
+    "in_one_line",
     "installed_plugins",
     "is_module_class",
     "made",

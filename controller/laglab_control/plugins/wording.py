@@ -14,7 +14,12 @@ def one_line(error: BaseException) -> str:
     except Exception:  # a stranger's, too
         text = ""
     kind = type(error).__name__
-    return _short(f"{kind}: {text}" if text else kind, LONGEST)
+    return in_one_line(f"{kind}: {text}" if text else kind)
+
+
+def in_one_line(text: str) -> str:
+    """A stranger's, as far as it can be told."""
+    return _short(text, LONGEST)
 
 
 def failure(error: BaseException) -> str:

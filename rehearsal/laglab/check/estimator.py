@@ -85,12 +85,24 @@ def interface(subject: Subject) -> str:
     """start, predict, correct, a state of every tick, and what else it has."""
     record = drive(MODEL, TICKS, seed=1)
     states = _run(subject.estimator, record, _late(record, 3))
-    subject.estimator.innovation(states[-1])
-    subject.estimator.ahead(states[-1], list(record.inputs[-3:]))
+    _try_the_optional(subject.estimator, states[-1], record)
     if subject.estimator.is_watchable:
         _run(Guard(subject.estimator, MODEL), record, _late(record, 3))
     size = len(states[-1].x) if states[-1].x is not None else 0
     return f"a state of {size} components, followed over {TICKS} ticks"
+
+
+def _try_the_optional(estimator: Estimator[State], state: State, record: Record) -> None:
+    """Whatever it has besides what it must."""
+    estimator.innovation(state)
+    estimator.ahead(state, list(record.inputs[-3:]))
+    estimator.expect(state, TICKS)
+    estimator.learned(state)
+    estimator.warning(state)
+    estimator.restart(state, record.x.copy(), record.P)
+    robot = estimator.calibrated(state, MODEL)
+    for u in record.inputs[-3:]:
+        robot.way(u)
 
 
 def pure(subject: Subject) -> str:

@@ -1,7 +1,9 @@
 """Filters whose optional methods answer something else than they must."""
 
+import math
+
 import numpy as np
-from mine import Watchable
+from mine import Watchable, Wide
 
 
 class Innovating(Watchable):
@@ -72,3 +74,96 @@ class Once(Watchable):
 
     def innovation(self, state):
         return 1.0 if state.tick == 40 else super().innovation(state)
+
+
+class NoParameters(Wide):
+    def learned(self, state):
+        return None
+
+
+class Numbers(Wide):
+    def learned(self, state):
+        return [1, 2]
+
+
+class NanParameter(Wide):
+    def learned(self, state):
+        return [("track", math.nan, 0.1)]
+
+
+class HugeParameter(Wide):
+    def learned(self, state):
+        return [("track", 10**400, 0.1)]
+
+
+class Nameless(Wide):
+    def learned(self, state):
+        return [(None, 1.0, 0.1)]
+
+
+class Learning(Wide):
+    """As it must."""
+
+    def learned(self, state):
+        return [("track", np.float64(1.01), 0)]
+
+    def calibrated(self, state, robot):
+        return Turning(robot)
+
+    def warning(self, state):
+        return "two\nlines \udc80"
+
+
+class Turning:
+    """A robot that answers what `other` makes of where it gets."""
+
+    def __init__(self, robot, other=tuple):
+        self.robot, self.other = robot, other
+
+    def way(self, u):
+        return self.other(self.robot.way(u))
+
+
+class NoRobot(Wide):
+    def calibrated(self, state, robot):
+        return None
+
+
+class Calibrating(Wide):
+    def calibrated(self, state, robot):
+        return Turning(robot, self.other) if state.tick >= 40 else robot
+
+
+class NoWay(Calibrating):
+    def other(self, right):
+        return None
+
+
+class NanWay(Calibrating):
+    def other(self, right):
+        return right._replace(x=math.nan)
+
+
+class TextWay(Calibrating):
+    def other(self, right):
+        return "xyt"
+
+
+class FailingWay(Calibrating):
+    def other(self, right):
+        raise ValueError("lost")
+
+
+class Warnings(Wide):
+    def warning(self, state):
+        return ["two", "texts"]
+
+
+class NoExpectation(Wide):
+    def expect(self, state, s):
+        return None
+
+
+class NoRestart(Wide):
+    def restart(self, state, x, P):
+        return None
