@@ -5,9 +5,13 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
+
+from laglab_control.errors import PluginFailedError
 from laglab_control.estimators.interface import Estimator, InForce, Measured, by_sampling
 from laglab_control.estimators.kalman import Innovation
 from laglab_control.model import Matrix, Vector
+from laglab_control.plugins import shown
 from laglab_control.robot import RobotModel
 
 WINDOW = 256
@@ -60,7 +64,7 @@ class Backdated(Estimator[BackdatedState]):
 
     def predict(self, state: BackdatedState, u: Vector) -> BackdatedState:
         """One tick further."""
-        x, P = self.forward(state.x, state.P, u)
+        x, P = _answered("forward", self.forward(state.x, state.P, u))
         past = (*state.past[-WINDOW:-1], state.past[-1]._replace(u=u), PastTick(x, P))
         return BackdatedState(state.tick + 1, x, P, past, None)
 
@@ -99,7 +103,24 @@ class Backdated(Estimator[BackdatedState]):
                 if i == newest:
                     S = P[:3, :3] + self.model.R
                     innovation = Innovation(self.model.innovation(here.z, x[:3]), S)
-                x, P = self.corrected(x, P, here.z)
+                x, P = _answered("corrected", self.corrected(x, P, here.z))
             if here.u is not None:
-                x, P = self.forward(x, P, here.u)
+                x, P = _answered("forward", self.forward(x, P, here.u))
         return BackdatedState(tick, x, P, tuple(past), innovation)
+
+
+def _answered(method: str, answer: tuple[Vector, Matrix]) -> tuple[Vector, Matrix]:
+    """What `method` has made of x and P. Raises PluginFailedError: they are no arrays."""
+    try:
+        x, P = answer
+    except Exception:  # it is no pair, or has an __iter__ of its own
+        raise _wrong(method, "x (d,) and P (d, d)", answer) from None
+    if not (isinstance(x, np.ndarray) and x.ndim == 1):
+        raise _wrong(method, "x as an array (d,)", x)
+    if not (isinstance(P, np.ndarray) and P.shape == (len(x), len(x))):
+        raise _wrong(method, f"P as an array {(len(x), len(x))}", P)
+    return x, P
+
+
+def _wrong(method: str, wanted: str, answer: object) -> PluginFailedError:
+    return PluginFailedError(f"{method} must answer {wanted}, not {shown(answer)}")

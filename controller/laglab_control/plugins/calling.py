@@ -41,6 +41,8 @@ def called(name: str, brought: object, method: str, *told: object) -> Any:
         return getattr(brought, method)(*told)
     except (StampError, KeyboardInterrupt):
         raise  # as an estimator must; and nobody's fault
+    except PluginFailedError as error:  # in our own words already
+        raise PluginFailedError(f"{name}.{method}: {error}") from error
     except BaseException as error:  # SystemExit too: no stranger is to end the whole program
         raise PluginFailedError(f"{name}.{method}: {failure(error)}") from error
 

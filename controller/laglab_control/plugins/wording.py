@@ -1,10 +1,19 @@
 """What strangers' things say of themselves, in a line."""
 
+import sys
 import traceback
 from pathlib import Path
+from typing import NamedTuple
 
 SHOWN, LONGEST = 60, 400
 """[characters] At most so much of a wrong answer, and of an exception's text, is shown."""
+
+OURS = {
+    *("laglab", "laglab_control", "laglab_station", "laglab_gateway"),
+    *("laglab_protocol", "laglab_fmu", "laglab_conformance"),
+}
+NOT_THEIRS = {*OURS, "numpy", *sys.stdlib_module_names}
+"""Top-level modules in which no stranger errs, though what a stranger gave them may fail there."""
 
 
 def one_line(error: BaseException) -> str:
@@ -22,15 +31,33 @@ def in_one_line(text: str) -> str:
     return _short(text, LONGEST)
 
 
+class _Place(NamedTuple):
+    module: str
+    file: str
+    line: int
+
+    @property
+    def is_theirs(self) -> bool:
+        """What a dataclass or a tuple has made for itself is in no file."""
+        return self.module.partition(".")[0] not in NOT_THEIRS and self.file != "<string>"
+
+    @property
+    def is_installed(self) -> bool:
+        return "site-packages" in Path(self.file).parts
+
+
 def failure(error: BaseException) -> str:
-    """The same of what was raised in a stranger's code, and where in the file that was called."""
-    frames = traceback.walk_tb(error.__traceback__)
-    theirs = [(frame.f_code.co_filename, line) for frame, line in frames][1:]
-    if not theirs:
+    """The same of what was raised in a stranger's code, and where in the stranger's own file."""
+    called = [
+        _Place(str(frame.f_globals.get("__name__")), frame.f_code.co_filename, line)
+        for frame, line in traceback.walk_tb(error.__traceback__)
+    ][1:]
+    if not called:
         return one_line(error)
-    file, _ = theirs[0]
-    line = [line for name, line in theirs if name == file][-1]
-    return f"{one_line(error)} ({Path(file).name}, line {line})"
+    theirs = [place for place in called if place.is_theirs]
+    own = [place for place in theirs if not place.is_installed]  # not in a library of theirs
+    innermost = (own or theirs or called[:1])[-1]
+    return f"{one_line(error)} ({Path(innermost.file).name}, line {innermost.line})"
 
 
 def shown(answer: object) -> str:
