@@ -38,6 +38,14 @@ class Vague(Raises):
     def read(self):
         return super().read() if getattr(self, "steps", 0) < 6 else [1.0, 2.0]
 
+class Huge(Raises):
+    def read(self):
+        return super().read() if getattr(self, "steps", 0) < 6 else [10**400] * 8
+
+class Tearing(Raises):
+    def read(self):
+        return super().read() if getattr(self, "steps", 0) < 6 else map(divmod, [1] * 8, [0] * 8)
+
 class Unmade(Skater):
     def __init__(self, *told):
         raise OSError("no rink")
@@ -106,6 +114,8 @@ def test_what_fails_in_a_process_of_its_own_ends_the_run(ice: Path, laglab: Lagl
         ("Raises", "tick 6: faulty:Raises.step: ValueError: no ice left here"),
         ("Nowhere", "tick 7: faulty:Nowhere.read: x must be finite, not nan"),
         ("Vague", r"tick 6: faulty:Vague.read: must answer x, y, theta, .*, not \[1.0, 2.0\]"),
+        ("Huge", r"tick 6: faulty:Huge.read: must answer x, y, theta, .*, not \[1000"),
+        ("Tearing", r"tick 6: faulty:Tearing.read: must answer x, y, theta, .*, not <map"),
     ],
 )
 def test_what_it_does_wrong_is_one_line(
@@ -114,6 +124,16 @@ def test_what_it_does_wrong_is_one_line(
     monkeypatch.syspath_prepend(str(ice))
     with pytest.raises(RunError, match=said):
         run("fig6", {"plant.kind": f"faulty:{name}"})
+
+
+@pytest.mark.parametrize("name", ["Huge", "Tearing"])
+def test_the_check_finds_what_is_no_reading(
+    ice: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    monkeypatch.syspath_prepend(str(ice))
+    (failed,) = checked("plant", f"faulty:{name}")
+    assert failed[:2] == ("interface", "no")
+    assert f"faulty:{name}.read: must answer x, y, theta" in failed.said
 
 
 @pytest.mark.parametrize(

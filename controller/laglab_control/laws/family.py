@@ -56,7 +56,7 @@ class BroughtLaw(Law):
         try:
             v, omega, memory = answer
             demand = Demand(float(v * 1.0), float(omega * 1.0), memory)  # float() takes a text, too
-        except (TypeError, ValueError):
+        except Exception:  # whatever is in it, as an int that is too large for a float
             raise PluginFailedError(
                 f"{self.name}.drive: must answer v, omega and a memory, not {shown(answer)}"
             ) from None

@@ -133,6 +133,13 @@ class Infinite(Law):
         return min(1.0, 1 / rho), 0.0, None
 
 
+class Huge(Law):
+    """Answers an int that is too large for a float."""
+
+    def drive(self, pose, time, memory):
+        return 10**400 if time > 1e3 else 0.1, 0.0, None
+
+
 class Dicing(Law):
     def drive(self, pose, time, memory):
         v, omega, memory = super().drive(pose, time, memory)

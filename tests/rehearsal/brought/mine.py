@@ -188,6 +188,11 @@ class TextLaw(LawAt40):
         return "0.1", "0.2", None
 
 
+class HugeLaw(LawAt40):
+    def other(self):
+        return 10**400, 0.1, None
+
+
 class NoMethod:
     def __init__(self, model):
         self.start = self.predict = lambda a, b: None

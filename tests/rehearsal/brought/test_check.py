@@ -31,6 +31,7 @@ ROWS: list[tuple[Kind, str, str, str]] = [
     ("estimator", "broken:Overconfident", "NEES", "on average, not within"),
     ("law", "broken:NoLaw", "interface", "must be drive(pose, time, memory)"),
     ("law", "broken:Infinite", "finite", "ZeroDivisionError"),
+    ("law", "broken:Huge", "finite", "must answer v, omega and a memory, not (1000"),
     ("law", "broken:Dicing", "deterministic", "twice differently"),
     ("law", "broken:Appending", "memory", "asked again with its memory"),
     ("plant", "broken:ShortReading", "interface", "must answer x, y, theta"),

@@ -44,6 +44,7 @@ ANSWERS = {
     "estimator:Ragged": "Ragged.ahead must answer a finite pose (3,), not [[1",
     "law:FailingLaw": "FailingLaw.drive: ZeroDivisionError",
     "law:TwoNumbers": "TwoNumbers.drive: must answer v, omega and a mem",
+    "law:HugeLaw": "HugeLaw.drive: must answer v, omega and a memory, not (1000",
     "law:TextLaw": "TextLaw.drive: must answer v, omega and a memory, not ('0.1'",
 }
 

@@ -46,7 +46,7 @@ class Watched:
         answer = called(self._name, self._one, "read")
         try:
             reading = Reading(*(float(each * 1.0) for each in answer))  # or it takes a text
-        except (TypeError, ValueError):
+        except Exception:  # whatever is in it, as an int that is too large for a float
             wanted = ", ".join(Reading._fields)
             raise self._wrong(f"must answer {wanted}, not {shown(answer)}") from None
         for name, number in reading._asdict().items():
