@@ -161,6 +161,17 @@ class Guarded(Watchable):
         return right._replace(x=right.x + 0j) if state.tick == 5 else right
 
 
+class Asking(At40):
+    def other(self, right):
+        return input() and right
+
+
+class Debugged(At40):
+    def other(self, right):
+        breakpoint()
+        return right
+
+
 class LawAt40(Law):
     """Answers something else from then on, 10 ticks before the command comes into force."""
 

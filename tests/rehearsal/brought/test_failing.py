@@ -72,6 +72,21 @@ def test_what_fails_under_way_ends_both_processes_in_one_line_and_keeps_the_reco
     failed_as_it_must(brought, failed.returncode, failed.stderr, said)
 
 
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("Asking", "tick 40: mine:Asking.correct: EOFError: EOF when reading a line (mine.py, lin"),
+        ("Debugged", "tick 40: mine:Debugged.correct: BdbQuit (mine.py, line"),
+    ],
+)
+def test_in_a_process_of_its_own_nobody_is_there_to_be_asked(
+    laglab: Laglab, brought: Path, name: str, said: str
+) -> None:
+    """It is ours from which the orders come, so what waited for an answer waited for good."""
+    failed = laglab(*LAB, "--estimator", f"mine:{name}", "--silence", "5")
+    failed_as_it_must(brought, failed.returncode, failed.stderr, said)
+
+
 MARKUP = (
     "--estimator",
     "Markup",

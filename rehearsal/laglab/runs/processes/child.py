@@ -2,8 +2,9 @@
 
 Not `multiprocessing`, which runs the caller's own script again in every child. Orders go in on the
 child's standard input, a line each, which stays open: its end, whatever became of us, asks the
-child to end in order. Reports come out on its standard output, a line each; what else is printed
-there goes to standard error. Its temporary files are in a folder of its own, which both clear: it
+child to end in order; who else reads there, as `input()` and a debugger do, finds it at its end.
+Reports come out on its standard output, a line each; what else is printed there goes to standard
+error. Its temporary files are in a folder of its own, which both clear: it
 may crash, and we may be killed.
 
     python -P -m laglab.runs.processes.child MODULE:FUNCTION once|again FOLDER
@@ -135,9 +136,9 @@ def main(target: str, again: bool) -> None:
     on_interrupt(_leave)
     with FileIO(os.dup(1), "wb") as out:
         os.dup2(2, 1)  # an FMU that prints must not disturb the reports
-        orders: Queue[bytes] = Queue()
-        orders.put(_line() or _leave())
-        threading.Thread(target=_read_on, args=(orders,), daemon=True).start()
+        source, orders = _source_of_orders(), Queue[bytes]()
+        orders.put(_line(source) or _leave())
+        threading.Thread(target=_read_on, args=(source, orders), daemon=True).start()
         module, _, name = target.partition(":")
         function: Callable[[Any, Tell], None] = getattr(importlib.import_module(module), name)
         on_interrupt(signal.default_int_handler)
@@ -156,21 +157,31 @@ def _leave(*_: object) -> NoReturn:
     os._exit(INTERRUPTED)
 
 
-def _line() -> bytes:
-    """The next of standard input, empty at its end; read without a buffer, whose lock would outlive
-    us at our end."""
+def _source_of_orders() -> int:
+    """Our standard input, for us alone: it never ends while we run, and whoever else read there, as
+    `breakpoint()` does, would wait for as long. They get one that is empty."""
+    source = os.dup(0)
+    empty = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(empty, 0)
+    os.close(empty)
+    return source
+
+
+def _line(source: int) -> bytes:
+    """The next one, empty at the end; read without a buffer, whose lock would outlive us at our
+    end."""
     line = b""
     while not line.endswith(b"\n"):
-        piece = os.read(0, 1 << 16)  # nobody sends an order before the last one is done
+        piece = os.read(source, 1 << 16)  # nobody sends an order before the last one is done
         if not piece:
             return b""
         line += piece
     return line
 
 
-def _read_on(orders: Queue[bytes]) -> None:
+def _read_on(source: int, orders: Queue[bytes]) -> None:
     """Whatever comes; at the end our parent is gone, or wants us to go."""
-    while line := _line():
+    while line := _line(source):
         orders.put(line)
     _interrupt()
 
