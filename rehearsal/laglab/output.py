@@ -1,13 +1,14 @@
 """Standard output and error, whatever they are: another encoding, closed, full, nobody reads."""
 
 import codecs
+import errno
 import io
 import os
 import sys
 import unicodedata
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
@@ -58,6 +59,8 @@ class _Lasting(io.RawIOBase):
                 return self._raw.write(data)
             except OSError as error:
                 self.failure = error
+            except ValueError:  # somebody has closed it
+                self.failure = OSError(errno.EBADF, os.strerror(errno.EBADF))
         return memoryview(data).nbytes
 
     def writable(self) -> bool:
@@ -68,6 +71,22 @@ class _Lasting(io.RawIOBase):
 
     def isatty(self) -> bool:
         return self._raw is not None and self._raw.isatty()
+
+
+class _Buffer(io.BufferedWriter):
+    def close(self) -> None:
+        self.flush()
+
+
+class _Text(io.TextIOWrapper):
+    """Code that somebody brought may close it, or take its buffer: it stays open to us."""
+
+    def close(self) -> None:
+        self.flush()
+
+    def detach(self) -> Any:
+        self.flush()
+        return self.buffer
 
 
 @contextmanager
@@ -81,8 +100,8 @@ def _lasting(name: str) -> Iterator[_Lasting]:
         return
     stream.flush()
     lasting = _Lasting(raw)
-    wrapped = io.TextIOWrapper(
-        io.BufferedWriter(lasting),
+    wrapped = _Text(
+        _Buffer(lasting),
         stream.encoding,
         errors=SPELLED_OUT,
         line_buffering=stream.line_buffering,

@@ -13,6 +13,24 @@ from laglab_gateway import read_trace
 
 RUN = (sys.executable, "-m", "laglab", "run", "fig6", "--duration", "0.3", "--out", "run")
 Ended = subprocess.CompletedProcess[str]
+CLOSING = """
+import io, sys
+
+class Robot:
+    def __init__(self, sample_time, start, seed):
+        self.start, self.steps = start, 0
+
+    def read(self):
+        return (*self.start, *self.start, 0.0, 0.0)
+
+    def step(self, v, omega):
+        self.steps += 1
+        if self.steps == 20:
+            {line}
+
+    def place(self, x, y, theta):
+        pass
+"""
 
 
 def assert_whole(folder: Path, ticks: int = 30) -> None:
@@ -89,6 +107,34 @@ def test_a_full_disk_behind_the_output_is_one_line_after_the_run(
 def test_where_nothing_can_be_said_the_code_says_it(shell: Callable[..., Ended]) -> None:
     laglab = (sys.executable, "-m", "laglab")
     assert shell(">/dev/full 2>/dev/full", *laglab, "estimators").returncode == 4
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "sys.stdout.close()",
+        "sys.stdout.buffer.close()",
+        "sys.stdout.detach()",
+        "sys.stdout = io.TextIOWrapper(sys.stdout.detach())",
+        "sys.stderr.close()",
+    ],
+)
+def test_a_robot_that_closes_the_output_closes_it_to_nobody(line: str, tmp_path: Path) -> None:
+    (tmp_path / "closing.py").write_text(CLOSING.format(line=line))
+    command = [*RUN, "--transport", "inline", "--set", "plant.kind=closing:Robot"]
+    ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert "did not converge" in ended.stdout
+    assert_whole(tmp_path / "run")
+
+
+def test_where_the_system_s_output_was_closed_it_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "closing.py").write_text(CLOSING.format(line="sys.__stdout__.close()"))
+    command = [*RUN, "--transport", "inline", "--set", "plant.kind=closing:Robot"]
+    ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    said = "laglab: cannot write the output: Bad file descriptor\n"
+    assert (ended.returncode, ended.stderr) == (4, said)
+    assert_whole(tmp_path / "run")
 
 
 @pytest.mark.parametrize("lines", [0, 5])
