@@ -188,7 +188,7 @@ def test_resources_that_are_missing_are_told_by_the_fmu(tmp_path: Path, library:
         (Wiring(WHEELS, {**POSE, "x": "zzzzzzz"}), "its outputs: posX, posY"),
         (Wiring(WHEELS, {**POSE, "x": "posX[1]"}), r"outputs.x: .* no variable 'posX\[1\]'"),
         (
-            Wiring({key: "drive.cmd_left" for key in WHEELS}, POSE),
+            Wiring(dict.fromkeys(WHEELS, "drive.cmd_left"), POSE),
             "inputs.omega_right: drive.cmd_left is inputs.omega_left already",
         ),
         (Wiring(WHEELS, {**POSE, "y": POSE["x"]}), "outputs.y: posX is outputs.x already"),

@@ -172,6 +172,8 @@ def test_a_disarmed_robot_moves_when_a_ground_station_arms_it(
     options = ("--pace", "realtime", "--disarmed", "--watch", "udpin://127.0.0.1:0")
     gateway = start("gateway", "fig4", *options, "--endpoint", "udpin://127.0.0.1:0")
     port, watched = listening_port(gateway), listening_port(gateway)
+    assert gateway.stderr is not None
+    assert "stands still until a ground station arms it" in gateway.stderr.readline()
     start("controller", "fig4", "--endpoint", f"udpout://127.0.0.1:{port}")
     sender, receiver = Sender(255, 190), Receiver()
 

@@ -107,10 +107,10 @@ def gateway(
         if said := wrapped_replay(scenario):
             say(said)
         _say_whom_we_wait_for("the controller", link)
-        if disarmed:
-            say("the robot is disarmed: it stands still until a ground station arms it")
         for each in watchers:
             say(f"a ground station may look on at {each.name}")
+        if disarmed:
+            say("the robot is disarmed: it stands still until a ground station arms it")
         line = page.line if page else None
         with (
             progress_of(scenario) as told,
