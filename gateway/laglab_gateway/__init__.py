@@ -57,7 +57,7 @@ from laglab_gateway.relay import Relay
 from laglab_gateway.services import (
     Origin,
     Parameter,
-    Parameters,
+    ParameterTable,
     Services,
     Timesyncing,
     standard_parameters,
@@ -101,7 +101,7 @@ __all__ = [
     "Origin",
     "Outcome",
     "Parameter",
-    "Parameters",
+    "ParameterTable",
     "Patience",
     "Plant",
     "PlantSilentError",

@@ -50,7 +50,7 @@ from laglab_protocol import (
     Tick,
 )
 
-Cell = float | None
+Number = float | None
 
 EMERGENCY_STOP = "emergency stop: the robot stands still"
 
@@ -278,12 +278,12 @@ class RobotSide(ABC):
 
     def _row(
         self,
-        pose: tuple[Cell, Cell, Cell],
-        sample: tuple[Cell, Cell, Cell],
-        speeds: tuple[Cell, Cell],
+        pose: tuple[Number, Number, Number],
+        sample: tuple[Number, Number, Number],
+        speeds: tuple[Number, Number],
     ) -> TraceRow:
         time, answer = self.elapsed * self._config.sample_time, self._answer
-        unsaid: tuple[Cell, Cell, Cell] = (None, None, None)
+        unsaid: tuple[Number, Number, Number] = (None, None, None)
         estimate = answer.estimates[0].pose if answer.estimates else unsaid
         sent = answer.command.speeds if answer.command else unsaid[:2]
         return TraceRow(self.tick, time, *pose, *sample, *estimate, *sent, *speeds)

@@ -50,3 +50,16 @@ def test_all_that_is_offered_is_there() -> None:
     for package in PACKAGES:
         offered = import_module(package)
         assert not [name for name in offered.__all__ if not hasattr(offered, name)]
+
+
+SAME_WORD = {"ConfigError", "Reading"}
+"""Two things each, of one meaning, in components that know nothing of each other."""
+
+
+def test_one_word_has_one_meaning() -> None:
+    offered: dict[str, set[int]] = {}
+    for package in PACKAGES:
+        module = import_module(package)
+        for name in module.__all__:
+            offered.setdefault(name, set()).add(id(getattr(module, name)))
+    assert {name for name, things in offered.items() if len(things) > 1} == SAME_WORD

@@ -14,8 +14,8 @@ from laglab_control.batch import matrices
 from laglab_control.batch.matrices import IDENTITY, Square, Symmetric, covariance_of
 from laglab_control.batch.odometry import (
     Leg,
+    Rotation,
     Spread,
-    Turn,
     at_origin,
     carried,
     spread,
@@ -32,7 +32,7 @@ class Present(NamedTuple):
     """The estimates of the present."""
 
     pose: Pose
-    turn: Turn
+    turn: Rotation
     """From the headings of the odometers to those of the robots."""
     P: Symmetric | None
     """What is claimed for their errors; None: nothing."""
@@ -40,7 +40,7 @@ class Present(NamedTuple):
 
 def present_of(belief: Belief, now: Leg) -> Present:
     """A belief in its parts; `now` is the leg at whose end it is."""
-    return Present(pose_of(belief), Turn.between(now, belief.theta), covariance_of(belief))
+    return Present(pose_of(belief), Rotation.between(now, belief.theta), covariance_of(belief))
 
 
 class Setting(NamedTuple):
@@ -114,7 +114,7 @@ class Delayed(NamedTuple):
 
     there: Belief
     at: Leg
-    turn: Turn
+    turn: Rotation
     legs: tuple[tuple[Leg, Spread], ...]
     since: int
     """How many of `legs` lead from there to the present."""
@@ -131,7 +131,7 @@ class DelayedEkf(BatchEstimator[Delayed]):
 
     def start(self, belief: Belief) -> Delayed:
         at = at_origin(len(belief.x))
-        turn = Turn.between(at, belief.theta)
+        turn = Rotation.between(at, belief.theta)
         return Delayed(belief, at, turn, (), 0, np.zeros((7, len(belief.x))), measured=False)
 
     def predict(self, state: Delayed, leg: Leg) -> Delayed:
@@ -148,7 +148,7 @@ class DelayedEkf(BatchEstimator[Delayed]):
             there = predicted(robots.model, there, turn.of(at.before), at.u)
             since, sums = since - 1, sums - one
         there, compared = robots.correct(there, z)
-        turn = Turn.between(at, there.theta)
+        turn = Rotation.between(at, there.theta)
         return Delayed(there, at, turn, legs, since, sums, measured=True), compared
 
     def estimate(self, state: Delayed, now: Leg) -> Present:
@@ -262,7 +262,7 @@ class Raw(BatchEstimator[Pose | None]):
         return z, None
 
     def estimate(self, state: Pose | None, now: Leg) -> Present | None:
-        return None if state is None else Present(state, Turn.between(now, state.theta), None)
+        return None if state is None else Present(state, Rotation.between(now, state.theta), None)
 
 
 BATCHED: Mapping[str, Callable[[Setting], BatchEstimator[Any]]] = {

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from laglab_control.batch.odometry import Leg, Turn, at_origin, driven
+from laglab_control.batch.odometry import Leg, Rotation, at_origin, driven
 from laglab_control.batch.robots import joined
 from laglab_control.batch.rows import Heading, Pose, Speeds, headings
 from laglab_control.config import StationConfig
@@ -48,7 +48,7 @@ def sent(config: StationConfig, flight: Flight, u: Speeds) -> Flight:
     return Flight(legs, way)
 
 
-def place_of(flight: Flight, pose: Pose, turn: Turn) -> tuple[Pose, Heading]:
+def place_of(flight: Flight, pose: Pose, turn: Rotation) -> tuple[Pose, Heading]:
     """(29): where the robots will be when the commands that are now made come into force."""
     then = flight.legs[-1]
     if flight.way is not None:

@@ -46,7 +46,7 @@ def driven(model: RobotModel, last: Leg, u: Speeds) -> Leg:
     return Leg(u, last.heading, end, near_headings(end.theta))
 
 
-class Turn(NamedTuple):
+class Rotation(NamedTuple):
     """By how much a robot looks elsewhere than its odometer says: cosine and sine."""
 
     c: Row
@@ -117,7 +117,7 @@ def uncertain(model: RobotModel, sums: Spread, legs: int, end: Pose) -> Symmetri
     return Symmetric(P_xx, P_xy, np.negative(dy, dy), P_yy, dx, np.array([turned]))
 
 
-def carried(belief: Belief, turn: Turn, way: Pose, P: Symmetric) -> Belief:
+def carried(belief: Belief, turn: Rotation, way: Pose, P: Symmetric) -> Belief:
     """`compose` of a belief and a stretch: its way as the robot has it, its P as the odometer."""
     dx, dy, turned = way
     xx, xy, xt, yy, yt, tt = led(covariance_of(belief), dx, dy)
@@ -128,7 +128,7 @@ def carried(belief: Belief, turn: Turn, way: Pose, P: Symmetric) -> Belief:
     return Motion(x, y, theta, xx, xy, xt, yy, yt, tt + further.tt)
 
 
-def _rotated(P: Symmetric, turn: Turn) -> Symmetric:
+def _rotated(P: Symmetric, turn: Rotation) -> Symmetric:
     """In arrays of its own."""
     (c, s), (xx, xy, xt, yy, yt, tt) = turn, P
     difference, cs = xx - yy, c * s

@@ -7,13 +7,13 @@ Item = TypeVar("Item")
 Product = TypeVar("Product")
 
 
-class Cell(NamedTuple, Generic[Item, Product]):
+class Stacked(NamedTuple, Generic[Item, Product]):
     """One item of a stack, with the product of it and of all below."""
 
     item: Item
     factor: Product
     product: Product
-    below: "Cell[Item, Product] | None"
+    below: "Stacked[Item, Product] | None"
 
 
 class SlidingProduct(Generic[Item, Product]):
@@ -31,8 +31,8 @@ class SlidingProduct(Generic[Item, Product]):
         self,
         compose: Callable[[Product, Product], Product],
         identity: Product,
-        front: Cell[Item, Product] | None = None,
-        back: Cell[Item, Product] | None = None,
+        front: Stacked[Item, Product] | None = None,
+        back: Stacked[Item, Product] | None = None,
     ) -> None:
         """Empty when no stacks are given. `compose(older, newer)` must be associative."""
         self.identity = identity
@@ -72,12 +72,12 @@ class SlidingProduct(Generic[Item, Product]):
         for cell in reversed(list(_walk(self._back))):
             yield cell.item
 
-    def _longer(self, item: Item, factor: Product) -> Cell[Item, Product]:
+    def _longer(self, item: Item, factor: Product) -> Stacked[Item, Product]:
         back = self._back
         product = factor if back is None else self._compose(back.product, factor)
-        return Cell(item, factor, product, back)
+        return Stacked(item, factor, product, back)
 
-    def _without_oldest(self, back: Cell[Item, Product] | None) -> tuple[Item, Self]:
+    def _without_oldest(self, back: Stacked[Item, Product] | None) -> tuple[Item, Self]:
         front = self._front
         if front is None:
             front, back = self._turned(back), None
@@ -85,17 +85,17 @@ class SlidingProduct(Generic[Item, Product]):
             raise IndexError("the window is empty")
         return front.item, type(self)(self._compose, self.identity, front.below, back)
 
-    def _turned(self, back: Cell[Item, Product] | None) -> Cell[Item, Product] | None:
-        front: Cell[Item, Product] | None = None
+    def _turned(self, back: Stacked[Item, Product] | None) -> Stacked[Item, Product] | None:
+        front: Stacked[Item, Product] | None = None
         for cell in _walk(back):
             product = cell.factor
             if front is not None:
                 product = self._compose(cell.factor, front.product)
-            front = Cell(cell.item, cell.factor, product, front)
+            front = Stacked(cell.item, cell.factor, product, front)
         return front
 
 
-def _walk(cell: Cell[Item, Product] | None) -> Iterator[Cell[Item, Product]]:
+def _walk(cell: Stacked[Item, Product] | None) -> Iterator[Stacked[Item, Product]]:
     while cell is not None:
         yield cell
         cell = cell.below

@@ -26,7 +26,7 @@ KEPT = 100
 """Lines of what the FMU logs; older ones are forgotten."""
 
 
-class Log:
+class LastLines:
     """What an FMU says of itself: the last lines."""
 
     def __init__(self) -> None:
@@ -40,7 +40,7 @@ class Log:
 
 
 @contextmanager
-def instance(file: FmuFile, log: Log) -> Iterator[Any]:
+def instance(file: FmuFile, log: LastLines) -> Iterator[Any]:
     """FMPy's object for the FMU, not yet initialized; gone with its files when the context ends.
 
     Raises FmuFileError: it does not start.
@@ -58,7 +58,7 @@ def instance(file: FmuFile, log: Log) -> Iterator[Any]:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def _started(file: FmuFile, interface: str, folder: Path, log: Log) -> Any:
+def _started(file: FmuFile, interface: str, folder: Path, log: LastLines) -> Any:
     needed = ("resources/", f"binaries/{file.folder}/")
     try:
         fmpy.extract(file.path, str(folder), include=lambda name: name.startswith(needed))

@@ -11,7 +11,7 @@ from fmpy.fmi1 import FMICallException
 from laglab_fmu.errors import CallError
 from laglab_fmu.foreign.exchange import ASKS_TO_END, Integrator
 from laglab_fmu.foreign.file import FmuFile
-from laglab_fmu.foreign.instance import Log, initialize, instance
+from laglab_fmu.foreign.instance import LastLines, initialize, instance
 from laglab_fmu.foreign.steps import substeps
 from laglab_fmu.foreign.values import Reader, Writer, starting
 from laglab_fmu.foreign.wiring import (
@@ -47,7 +47,7 @@ class ForeignRobot:
         check(file, wiring, sample_time)
         self._file, self._wiring, self._sample_time = file, wiring, sample_time
         self._substeps = substeps(file, sample_time)
-        self.log = Log()
+        self.log = LastLines()
         self._runs = False
         with ExitStack() as stack:
             self._fmu: Any = stack.enter_context(instance(file, self.log))

@@ -6,7 +6,7 @@ from itertools import islice
 
 from msgspec.json import Encoder
 
-Cell = int | float | str | None
+Value = int | float | str | None
 _encode = Encoder().encode
 _EXPONENT = re.compile(rb"e(?<=\de)(-?)(\d+)")
 _SMALL = re.compile(rb"0\.0000(?<!\d0\.0000)\d+")
@@ -18,7 +18,7 @@ def csv_header(names: Iterable[str]) -> bytes:
     return (",".join(names) + "\n").encode()
 
 
-def csv_lines(rows: Sequence[tuple[Cell, ...]]) -> bytes:
+def csv_lines(rows: Sequence[tuple[Value, ...]]) -> bytes:
     """A line each. A number is what its `repr` is, the shortest text that reads back to the same
     double; None is an empty cell; a text is a word or some, of letters and blanks."""
     if not rows:
@@ -55,10 +55,10 @@ def _small(found: re.Match[bytes]) -> bytes:
     return repr(float(found[0])).encode()
 
 
-def _nothings(rows: Sequence[tuple[Cell, ...]]) -> int:
+def _nothings(rows: Sequence[tuple[Value, ...]]) -> int:
     return sum(row.count(None) for row in rows)
 
 
-def _line(row: tuple[Cell, ...]) -> str:
+def _line(row: tuple[Value, ...]) -> str:
     cells = ["" if cell is None else cell if isinstance(cell, str) else repr(cell) for cell in row]
     return ",".join(cells) + "\n"

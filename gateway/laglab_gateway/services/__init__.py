@@ -4,7 +4,7 @@ from laglab_gateway.services.asker import Asker, Askers
 from laglab_gateway.services.pace import Pace
 from laglab_gateway.services.parameters import (
     Parameter,
-    Parameters,
+    ParameterTable,
     safety_now,
     standard_parameters,
 )
@@ -20,7 +20,7 @@ __all__ = [
     "Origin",
     "Pace",
     "Parameter",
-    "Parameters",
+    "ParameterTable",
     "RobotState",
     "Services",
     "Timesyncing",

@@ -47,7 +47,7 @@ class Parameter:
         return None
 
 
-class Parameters:
+class ParameterTable:
     """The table, in a fixed order: `parameters["V_MAX"]` is the value now."""
 
     def __init__(self, parameters: Iterable[Parameter]) -> None:
@@ -107,10 +107,10 @@ def standard_parameters(
     measurement_delay: int,
     safety: Safety,
     others: Iterable[Parameter] = (),
-) -> Parameters:
+) -> ParameterTable:
     """What every gateway has: delays [ticks], limits [m/s, rad/s] (0: none), link timeout [s]."""
     v_limit, omega_limit = safety.v_limit or 0.0, safety.omega_limit or 0.0
-    return Parameters(
+    return ParameterTable(
         [
             Parameter("DELAY_N", command_delay),
             Parameter("DELAY_M", measurement_delay),
@@ -122,7 +122,7 @@ def standard_parameters(
     )
 
 
-def safety_now(parameters: Parameters, ramp: float) -> Safety:
+def safety_now(parameters: ParameterTable, ramp: float) -> Safety:
     """The limits and times as they are set now; the ramp [s] is no parameter."""
     v_limit, omega_limit = parameters["V_MAX"], parameters["OMEGA_MAX"]
     return _safety(v_limit or None, omega_limit or None, parameters["LINK_TIMEOUT"], ramp)

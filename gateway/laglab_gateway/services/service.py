@@ -5,7 +5,7 @@ from laglab_gateway.services.asker import Asker
 from laglab_gateway.services.commands import Commands
 from laglab_gateway.services.missions import about_missions
 from laglab_gateway.services.pace import Pace
-from laglab_gateway.services.parameters import Parameters
+from laglab_gateway.services.parameters import ParameterTable
 from laglab_gateway.services.reports import REQUESTS, SOMEWHERE, Origin, Seen, report
 from laglab_gateway.services.state import Arming, RobotState
 from laglab_gateway.services.timesync import Timesyncing
@@ -19,7 +19,7 @@ class Services:
 
     def __init__(
         self,
-        parameters: Parameters,
+        parameters: ParameterTable,
         armed: bool = True,
         timesync: Timesyncing | None = None,
         placeable: bool = True,

@@ -59,7 +59,7 @@ class Finding(NamedTuple):
     what: str
 
 
-class Taken(NamedTuple):
+class Names(NamedTuple):
     """What the included dialects have taken."""
 
     ids: frozenset[int | None]
@@ -91,7 +91,7 @@ def lint(xml: Path) -> list[Finding]:
     ]
 
 
-def _included(xml: Path) -> tuple[Taken, list[Finding]]:
+def _included(xml: Path) -> tuple[Names, list[Finding]]:
     """What the included dialects take; and which are nowhere."""
     includes = includes_of(xml)
     others = [parsed(path) for path in includes.found.values()]
@@ -101,7 +101,7 @@ def _included(xml: Path) -> tuple[Taken, list[Finding]]:
     missing = [
         Finding(xml.name, f"includes {name!r}, which is nowhere") for name in includes.missing
     ]
-    return Taken(ids, messages, enums), missing
+    return Names(ids, messages, enums), missing
 
 
 def _duplicates(what: str, values: Iterable[str]) -> Iterator[Finding]:
@@ -145,7 +145,7 @@ def _entry(entry: Element, where: str, enum: str) -> Iterator[Finding]:
         yield Finding(where, "no description")
 
 
-def _message(message: Element, taken: Taken, enums: frozenset[str]) -> Iterator[Finding]:
+def _message(message: Element, taken: Names, enums: frozenset[str]) -> Iterator[Finding]:
     where = _name(message)
     yield from _identity(message, where, taken)
     fields = message.findall("field")
@@ -160,7 +160,7 @@ def _message(message: Element, taken: Taken, enums: frozenset[str]) -> Iterator[
         yield Finding(where, f"payload of {size} bytes: at most {LARGEST_PAYLOAD} fit into a frame")
 
 
-def _identity(message: Element, where: str, taken: Taken) -> Iterator[Finding]:
+def _identity(message: Element, where: str, taken: Names) -> Iterator[Finding]:
     if not _UPPER.fullmatch(where):
         yield Finding(where, "message name: use upper-case letters, digits and _")
     if where in taken.messages:

@@ -7,7 +7,7 @@ from laglab.check import estimator, law, plant
 from laglab.check.finding import Finding, findings
 from laglab.check.subject import KINDS, SHIPPED, Kind, maker_of
 from laglab.runs.plant import open_plant
-from laglab.runs.plant.brought import Watched
+from laglab.runs.plant.brought import PluginPlant
 from laglab.scenario import Scenario, changed
 from laglab_control import ESTIMATORS, Circle, ConfigError, Law, PolarLaw, find_plugin
 from laglab_control.estimators import estimator_kind
@@ -93,4 +93,4 @@ def _shipped(name: str, options: dict[str, object], opened: ExitStack) -> plant.
 
 def _plant(name: str, options: dict[str, object]) -> plant.Subject:
     told = plant.SAMPLE_TIME, plant.START, plant.SEED
-    return plant.Subject(lambda: Watched.made(name, *told, options))
+    return plant.Subject(lambda: PluginPlant.made(name, *told, options))

@@ -17,7 +17,7 @@ from laglab.live.door import ORDERS, Door, answer, head, parse
 from laglab.live.messages import Given, Line, LiveOrder, Order, Over, Rows, packed, unpacked
 from laglab.live.page import page_html
 from laglab.live.place import Place
-from laglab.live.session import Session, words
+from laglab.live.session import Viewed, words
 from laglab.live.stream import Known, Piece, event
 from laglab.runs.processes.child import Tell
 from laglab.runs.processes.reports import Failed, Showing
@@ -65,7 +65,7 @@ class _Server(asyncio.DatagramProtocol):
         self._waiting: list[Rows] = []
         self._passed_on = -math.inf
         self._wanted: Order | None = None
-        self._session = Session(self._scenario) if order.station_alone else None
+        self._session = Viewed(self._scenario) if order.station_alone else None
         self._loop_at: tuple[str, int] | None = None
 
     async def run(self, tell: Tell) -> None:

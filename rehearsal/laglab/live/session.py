@@ -28,7 +28,7 @@ def words(frames: Iterable[bytes]) -> list[str]:
     ]
 
 
-class Session(Recorder):
+class Viewed(Recorder):
     """Makes rows of frames, in a thread of its own: who reads a session waits for its frames."""
 
     def __init__(self, scenario: Scenario) -> None:

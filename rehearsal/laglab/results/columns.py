@@ -19,7 +19,7 @@ AT_A_TIME = 5_000
 """Rows for which memory always has room."""
 
 T = TypeVar("T")
-Cell = TypeVar("Cell", bound=np.generic)
+Column = TypeVar("Column", bound=np.generic)
 Lines = list[list[str]]
 
 
@@ -61,7 +61,7 @@ def csv_pieces(path: Path, names: Sequence[str], parsed: Callable[[Lines], T]) -
         raise NoRunError(f"{path} cannot be read: {error}") from error
 
 
-def joined(pieces: Iterable[Mapping[str, NDArray[Cell]]]) -> dict[str, NDArray[Cell]]:
+def joined(pieces: Iterable[Mapping[str, NDArray[Column]]]) -> dict[str, NDArray[Column]]:
     """One after the other."""
     whole = list(pieces)
     return {name: np.concatenate([each[name] for each in whole]) for name in whole[0]}
@@ -72,7 +72,7 @@ def stride(rows: int, most: int) -> int:
     return max(1, -(-rows // most))
 
 
-def thinned(columns: Mapping[str, NDArray[Cell]], every: int) -> dict[str, NDArray[Cell]]:
+def thinned(columns: Mapping[str, NDArray[Column]], every: int) -> dict[str, NDArray[Column]]:
     """One row of `every`; copied, as a view would keep all of them in memory."""
     return {name: column[::every].copy() for name, column in columns.items()}
 
@@ -102,7 +102,7 @@ def beside(keys: Array, others: Columns, key: str, names: Iterable[str]) -> dict
     return columns
 
 
-def at_ticks(columns: Mapping[str, NDArray[Cell]], ticks: Array) -> dict[str, NDArray[Cell]]:
+def at_ticks(columns: Mapping[str, NDArray[Column]], ticks: Array) -> dict[str, NDArray[Column]]:
     """The rows of these ticks."""
     there = np.isin(columns["tick"].astype(float), ticks)
     return {name: column[there] for name, column in columns.items()}

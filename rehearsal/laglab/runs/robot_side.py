@@ -23,7 +23,7 @@ from laglab_gateway import (
     Gateway,
     GatewayConfig,
     Parameter,
-    Parameters,
+    ParameterTable,
     RandomFates,
     RecordedFates,
     Relay,
@@ -93,7 +93,7 @@ class Setup:
             )
 
 
-def shown_parameters(scenario: Scenario) -> Parameters:
+def shown_parameters(scenario: Scenario) -> ParameterTable:
     """What a ground station reads: the gateway's own, the law's gains, the noise [SI units]."""
     noise = scenario.plant.measurement_variance if scenario.noise else (0.0, 0.0, 0.0)
     law = scenario.law

@@ -1,4 +1,4 @@
-"""Parameters are listed, read and set."""
+"""ParameterTable are listed, read and set."""
 
 import math
 

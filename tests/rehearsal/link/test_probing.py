@@ -10,7 +10,7 @@ import pytest
 from laglab.link.measured import bursts
 from laglab.link.probing import Clocks, Prober, Sizes, seen_by_clocks
 from laglab.link.probing.clocks import ClockTimes, lowest_line
-from laglab.link.probing.ends import Echo
+from laglab.link.probing.ends import Answerer
 from laglab.link.probing.probe import hidden_arrivals
 from laglab.link.probing.sizes import overload
 from laglab_protocol import NO_PROBE, PROBE_FILLER, PROBE_LAGS, Probe
@@ -38,7 +38,7 @@ def crossed(
 ) -> Clocks:
     """The two ends in a world without time: frame number i takes up(i), down(i) ns, None: lost.
     After `until` [ns] the measurement is cut short."""
-    prober, echo = Prober(7, count, INTERVAL_US, FILLER), Echo(FILLER)
+    prober, echo = Prober(7, count, INTERVAL_US, FILLER), Answerer(FILLER)
     flying: list[tuple[int, int, bool, Probe]] = []
     now, due = 0, 0
     while not prober.is_done(now) and now < until:
@@ -154,7 +154,7 @@ def test_an_answer_that_comes_twice_counts_once_and_when_it_came_first() -> None
 
 
 def test_an_end_that_hears_nothing_tells_of_nothing_and_is_forgotten() -> None:
-    echo = Echo(FILLER)
+    echo = Answerer(FILLER)
     assert echo.say(0) is None
     assert echo.hear(asked(number=5, interval_us=10), 0)
     assert echo.end is not None
@@ -168,7 +168,7 @@ def test_an_end_that_hears_nothing_tells_of_nothing_and_is_forgotten() -> None:
 
 
 def test_who_measures_slowly_is_not_forgotten_in_between() -> None:
-    echo = Echo(FILLER)
+    echo = Answerer(FILLER)
     echo.hear(asked(interval_us=2_000_000), 0)
     assert echo.take_over(6 * 10**9 - 1) is None
     assert echo.take_over(6 * 10**9) is not None
@@ -187,7 +187,7 @@ def test_a_line_that_carries_less_than_a_run_says_is_told() -> None:
 
 
 def test_who_measures_is_not_disturbed_by_another() -> None:
-    echo, last = Echo(FILLER), 2**32 - 1
+    echo, last = Answerer(FILLER), 2**32 - 1
     assert echo.is_for(asked(last), 0)
     echo.hear(asked(last), 0)
     assert echo.is_for(asked(last), 1)

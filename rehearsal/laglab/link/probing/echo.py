@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from laglab.link.probing.clock import WallClock
-from laglab.link.probing.ends import Echo
+from laglab.link.probing.ends import Answerer
 from laglab.link.probing.sizes import filler_for, real_sizes
 from laglab_protocol import STATION_SYSTEM, Codec, Frame, Listener, Probe, Refusals
 
@@ -18,7 +18,7 @@ def echo(link: Listener, codec: Codec, tell: Callable[[str], None]) -> None:
     """
     clock = WallClock()
     sender = codec.sender
-    end = Echo(filler_for(sender, real_sizes(sender).measurement))
+    end = Answerer(filler_for(sender, real_sizes(sender).measurement))
     refusals = Refusals(clock() * 1e-9)
     while True:
         frames = link.listen(end.wait(clock(), IDLE))

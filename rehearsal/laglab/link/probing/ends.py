@@ -59,7 +59,7 @@ class ProbeEnd:
         self._came.append((probe.sequence, now_ns))
 
 
-class Echo:
+class Answerer:
     """The end that answers: as often as it is asked to, for as long as it hears anything."""
 
     def __init__(self, filler: tuple[int, ...]) -> None:

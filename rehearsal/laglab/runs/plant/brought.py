@@ -19,7 +19,7 @@ def maker_of(kind: str) -> Maker:
     return find_plugin("laglab.plants", kind, tuple(SHIPPED))
 
 
-class Watched:
+class PluginPlant:
     """Somebody's object. Every method raises PluginFailedError, when it fails or answers what is no
     reading."""
 
@@ -72,7 +72,7 @@ class BroughtPlant:
     def __init__(self, scenario: Scenario) -> None:
         """Raises PluginError: it cannot be made, or is no plant."""
         plant, self._start, self._tick = scenario.plant, scenario.start, 0
-        self._one = Watched.made(
+        self._one = PluginPlant.made(
             plant.kind, scenario.sample_time, scenario.start, scenario.seed, plant.options
         )
         self._reading = self._read()
