@@ -8,10 +8,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from laglab_control.batch.matrices import Symmetric, plus_square, weighted
+from laglab_control.batch.matrices import Symmetric, plus_square
 from laglab_control.batch.robots import Compared
 from laglab_control.batch.rows import Pose, Row
 from laglab_control.chi_square import chi_square_bound
+from laglab_control.estimators.kalman import weighted
 from laglab_control.guard.evidence import (
     DEGREES,
     DRIFTS,

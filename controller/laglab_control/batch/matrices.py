@@ -68,13 +68,6 @@ def _minor(a: Row, b: Row, c: Row, d: Row) -> Row:
     return minor
 
 
-def weighted(v: Pose, weights: Symmetric) -> Row:
-    """v^T W v."""
-    x, y, t = v
-    xx, xy, xt, yy, yt, tt = weights
-    return x * (xx * x + 2 * (xy * y + xt * t)) + y * (yy * y + 2 * yt * t) + tt * t * t
-
-
 def times_vector(K: Square, v: Pose) -> Pose:
     """K v."""
     return Way(*[_dot(row, v) for row in (K[:3], K[3:6], K[6:])])

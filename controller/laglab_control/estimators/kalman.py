@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from laglab_control.model import Matrix, Model, Vector, identity, symmetric
+from laglab_control.motion import F
 
 ILL_CONDITIONED = 1e-12
 """Below this ratio of the determinant to the product of the diagonal, S counts as singular."""
@@ -47,7 +48,8 @@ def normalised_squared(innovation: Innovation) -> float:
     v, S = innovation
     if len(S) != 3:
         return float(v.dot(_inverse(S)).dot(v))
-    return weighted(v.tolist(), precision(S))
+    components: list[float] = v.tolist()
+    return weighted(components, precision(S))
 
 
 def precision(S: Matrix) -> Triangle:
@@ -72,8 +74,8 @@ def _cofactors(S: Matrix) -> tuple[Triangle, float] | None:
     return (c_xx, c_xy, c_xt, c_yy, c_yt, c_tt), determinant
 
 
-def weighted(v: Sequence[float], weights: Triangle) -> float:
-    """v^T W v."""
+def weighted(v: Sequence[F], weights: Sequence[F]) -> F:
+    """v^T W v, of one robot or of many; W by its upper triangle."""
     x, y, t = v
     xx, xy, xt, yy, yt, tt = weights
     return x * (xx * x + 2 * (xy * y + xt * t)) + y * (yy * y + 2 * yt * t) + tt * t * t

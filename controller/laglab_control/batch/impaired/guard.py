@@ -10,9 +10,10 @@ import numpy as np
 from laglab_control.batch.impaired.estimators import Weighed
 from laglab_control.batch.impaired.past import Rows
 from laglab_control.batch.impaired.timetable import Flags, Whole
-from laglab_control.batch.matrices import Symmetric, plus_square, weighted
+from laglab_control.batch.matrices import Symmetric, plus_square
 from laglab_control.batch.rows import Pose, Row
 from laglab_control.chi_square import chi_square_bound
+from laglab_control.estimators.kalman import weighted
 from laglab_control.guard.evidence import (
     DEGREES,
     DRIFTS,
