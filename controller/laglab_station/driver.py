@@ -139,4 +139,5 @@ class Driver:
         self.is_unjudged = bool(arrived)
         pose = self._control.pose
         self.lost = pose is not None and self._controller.diverged(pose)
-        return [*alarms, *said(tick, self._control, robot, asks)]
+        estimates = self._controller.kind.predicts
+        return [*alarms, *said(tick, self._control, robot, asks, estimates)]

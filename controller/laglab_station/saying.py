@@ -2,18 +2,26 @@
 
 from collections.abc import Sequence
 
+import numpy as np
 from msgspec.structs import replace
 
 from laglab_control import Control
 from laglab_protocol import Command, CommandLong, Estimate, Message, Planned
 from laglab_protocol.dialect.generated import laglab as mavlink
 
+UNCLAIMED = np.full((3, 3), np.nan)
+
 
 def said(
-    tick: int, control: Control, robot: tuple[int, int], asks: Sequence[Message] = ()
+    tick: int,
+    control: Control,
+    robot: tuple[int, int],
+    asks: Sequence[Message] = (),
+    estimates: bool = True,
 ) -> list[Message]:
-    """The answer to this robot's tick; the command closes it, and says how many went before."""
-    before = [*asks, *_estimate(tick, control)]
+    """The answer to this robot's tick; the command closes it, and says how many went before.
+    `estimates`: whether there is an estimate to report."""
+    before = [*asks, *(_estimate(tick, control) if estimates else ())]
     v, omega, _ = control.drive
     if control.plan:
         return [*before, *_planned(Command(v, omega, tick, *robot, len(before)), control)]
@@ -29,12 +37,12 @@ def _planned(command: Command, control: Control) -> list[Message]:
 
 
 def _estimate(tick: int, control: Control) -> list[Estimate]:
-    """The report of the estimate; none when nothing is claimed for it."""
+    """The report of the estimate, once there is one; with what is claimed for it, if anything."""
     pose, P = control.pose, control.P
-    if pose is None or P is None:
+    if pose is None:
         return []
-    (xx, xy, xt), (_, yy, yt), (_, _, tt) = P.tolist()
     x, y, theta = pose.tolist()
+    (xx, xy, xt), (_, yy, yt), (_, _, tt) = (UNCLAIMED if P is None else P).tolist()
     return [Estimate(x, y, theta, xx, xy, xt, yy, yt, tt, tick)]
 
 

@@ -1,5 +1,6 @@
 """What is kept of each tick besides the trace."""
 
+import math
 from typing import NamedTuple
 
 from laglab_protocol import Estimate
@@ -45,9 +46,11 @@ class ClaimRow(NamedTuple):
     p_tt: float
 
 
-def claimed(estimate: Estimate, time: float) -> ClaimRow:
-    """What an estimate claims of itself."""
+def claimed(estimate: Estimate, time: float) -> ClaimRow | None:
+    """What an estimate claims of itself; None where it claims nothing."""
     of = estimate
+    if math.isnan(of.p_xx):
+        return None
     return ClaimRow(of.tick, time, of.p_xx, of.p_xy, of.p_xt, of.p_yy, of.p_yt, of.p_tt)
 
 
@@ -68,7 +71,8 @@ class Notes:
 
     def said(self, estimate: Estimate, elapsed: int) -> None:
         """The station said this of its estimate, `elapsed` ticks into the run."""
-        self._claims.append(claimed(estimate, elapsed * self._sample_time))
+        if row := claimed(estimate, elapsed * self._sample_time):
+            self._claims.append(row)
 
     def take_arrivals(self) -> list[ArrivalRow]:
         """All since the last call."""

@@ -41,6 +41,19 @@ class Watchable(Wide):
         return self.ekf.innovation(state.inner)
 
 
+class Unclaiming(Wide):
+    """An observer, as Luenberger's: no covariance."""
+
+    def start(self, x, P):
+        return super().start(x, P)._replace(P=None)
+
+    def predict(self, state, u):
+        return super().predict(state, u)._replace(P=None)
+
+    def correct(self, state, measurements, inputs):
+        return super().correct(state, measurements, inputs)._replace(P=None)
+
+
 class Foreseeing(Wide):
     """Says itself where the robot will be."""
 

@@ -43,6 +43,19 @@ def test_a_filter_and_a_law_of_ones_own_are_as_good_as_ours(
     assert (summary["estimator"], summary["law"]) == ("mine:Wide", "mine:Law")
 
 
+def test_what_claims_nothing_is_recorded_and_judged_all_the_same(
+    laglab: Laglab, ended: Ended, brought: Path
+) -> None:
+    assert ended(*LAB, *INLINE, "--out", "ours").code == 0
+    own = (*LAB, "--estimator", "mine:Unclaiming", "--out", "run")
+    assert laglab(*own).returncode == 0
+    summaries = [
+        json.loads((brought / name / "summary.json").read_text()) for name in ("run", "ours")
+    ]
+    assert summaries[0]["rms_error"]["x"] == summaries[1]["rms_error"]["x"] > 0.0
+    assert not (brought / "run" / "claims.csv").exists()
+
+
 @pytest.mark.usefixtures("brought")
 def test_options_reach_the_class(ended: Ended, refused: Refused) -> None:
     options = (

@@ -6742,7 +6742,8 @@ setattr(MAVLink_laglab_command_message, "name", mavlink_msg_deprecated_name_prop
 class MAVLink_laglab_estimate_message(MAVLink_message):
     """
     Station to robot, for the record: the estimate of the pose at a
-    tick after its correction, and its covariance.
+    tick after its correction, and its covariance, NaN where none is
+    claimed.
     """
 
     id = MAVLINK_MSG_ID_LAGLAB_ESTIMATE
@@ -17865,7 +17866,8 @@ class MAVLink(object):
     def laglab_estimate_encode(self, x: float, y: float, theta: float, p_xx: float, p_xy: float, p_xt: float, p_yy: float, p_yt: float, p_tt: float, tick: int) -> MAVLink_laglab_estimate_message:
         """
         Station to robot, for the record: the estimate of the pose at a tick
-        after its correction, and its covariance.
+        after its correction, and its covariance, NaN where none is
+        claimed.
 
         x                         : Estimated position along the x axis of the world. [m] (type:double)
         y                         : Estimated position along the y axis of the world. [m] (type:double)
@@ -17884,7 +17886,8 @@ class MAVLink(object):
     def laglab_estimate_send(self, x: float, y: float, theta: float, p_xx: float, p_xy: float, p_xt: float, p_yy: float, p_yt: float, p_tt: float, tick: int, force_mavlink1: bool = False) -> None:
         """
         Station to robot, for the record: the estimate of the pose at a tick
-        after its correction, and its covariance.
+        after its correction, and its covariance, NaN where none is
+        claimed.
 
         x                         : Estimated position along the x axis of the world. [m] (type:double)
         y                         : Estimated position along the y axis of the world. [m] (type:double)

@@ -45,8 +45,8 @@ def heard_ticks(
                     arrivals.append(_arrival("command", in_force, z.tick - 1, first, sample_time))
             last = z.tick
         time = (heard.tick - first) * sample_time
-        claims = [claimed(heard.estimate, time)] if heard.estimate else []
-        yield HeardTick(heard, arrivals, claims)
+        claim = claimed(heard.estimate, time) if heard.estimate else None
+        yield HeardTick(heard, arrivals, [claim] if claim else [])
 
 
 def origin(first: int | None, last: int | None, tick: int) -> int:
