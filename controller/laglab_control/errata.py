@@ -12,7 +12,7 @@ import numpy as np
 
 from laglab_control.controller import Controller
 from laglab_control.estimators.interface import Estimator
-from laglab_control.estimators.popf import Popf
+from laglab_control.estimators.paper.popf import Popf
 from laglab_control.flight import Flight
 from laglab_control.laws import Demand, as_input
 from laglab_control.model import Matrix, Vector, symmetric

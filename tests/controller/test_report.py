@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from laglab_control import ESTIMATORS, Measured, RobotModel, StationConfig
-from laglab_control.estimators.popf import delay_limit
+from laglab_control.estimators.paper.popf import delay_limit
 from laglab_protocol import (
     MAV_SEVERITY_EMERGENCY,
     MAV_SEVERITY_ERROR,

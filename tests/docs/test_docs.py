@@ -17,7 +17,7 @@ from laglab.command import app_of
 from laglab.live import spelled_out
 from laglab.results.shadows import COLUMNS
 from laglab_control import Erratum, PolarLaw, delay_margin
-from laglab_control.estimators.popf import delay_limit
+from laglab_control.estimators.paper.popf import delay_limit
 from laglab_gateway import ROWS, TraceRow
 from laglab_gateway.drive import Rejection
 

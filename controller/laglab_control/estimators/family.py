@@ -6,17 +6,17 @@ from typing import Any, NamedTuple
 
 from laglab_control.errors import ConfigError
 from laglab_control.estimators.brought import brought_estimator
-from laglab_control.estimators.calibrating_ekf import CalibratingEkf
-from laglab_control.estimators.delayed_ekf import DelayedEkf
-from laglab_control.estimators.ekf import Ekf
+from laglab_control.estimators.calibrating.calibrating_ekf import CalibratingEkf
+from laglab_control.estimators.calibrating.wheel_scales import WheelScales
+from laglab_control.estimators.delayed.delayed_ekf import DelayedEkf
+from laglab_control.estimators.delayed.rewinding import Rewinding
+from laglab_control.estimators.delayed.windows import RigidMotions
 from laglab_control.estimators.interface import Estimator
-from laglab_control.estimators.popf import Popf
-from laglab_control.estimators.popf_exact import PopfExact
-from laglab_control.estimators.raw import Raw
-from laglab_control.estimators.rewinding import Rewinding
+from laglab_control.estimators.paper.ekf import Ekf
+from laglab_control.estimators.paper.popf import Popf
+from laglab_control.estimators.paper.popf_exact import PopfExact
+from laglab_control.estimators.paper.raw import Raw
 from laglab_control.estimators.tue_predictor import TuePredictor
-from laglab_control.estimators.wheel_scales import WheelScales
-from laglab_control.estimators.windows import RigidMotions
 from laglab_control.plugins import Maker, find_plugin, first_line
 from laglab_control.robot import RobotModel
 

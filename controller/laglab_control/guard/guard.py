@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from laglab_control.estimators.delayed_ekf import DelayedEkf, DelayedState
+from laglab_control.estimators.delayed.delayed_ekf import DelayedEkf, DelayedState
+from laglab_control.estimators.delayed.windows import RigidMotions
 from laglab_control.estimators.interface import (
     Calibration,
     Estimator,
@@ -20,7 +21,6 @@ from laglab_control.estimators.interface import (
     pose_of,
 )
 from laglab_control.estimators.kalman import Belief, Innovation, precision, weighted
-from laglab_control.estimators.windows import RigidMotions
 from laglab_control.guard.evidence import (
     WILD,
     Contradiction,

@@ -7,11 +7,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from laglab_control.estimators.calibrated import CalibratedMotions, CalibratedRobot, Learned
-from laglab_control.estimators.delayed_ekf import DelayedEkf, DelayedState
+from laglab_control.estimators.calibrating.calibrated import (
+    CalibratedMotions,
+    CalibratedRobot,
+    Learned,
+)
+from laglab_control.estimators.calibrating.parameters import Parameters
+from laglab_control.estimators.delayed.delayed_ekf import DelayedEkf, DelayedState
 from laglab_control.estimators.interface import Calibration, Estimator, InForce, Measured
 from laglab_control.estimators.kalman import Belief, Innovation
-from laglab_control.estimators.parameters import Parameters
 from laglab_control.model import Matrix, Vector
 from laglab_control.past.memory import MEMORY
 from laglab_control.robot import RobotModel, Ways

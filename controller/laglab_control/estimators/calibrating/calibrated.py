@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from laglab_control.angle import direction
+from laglab_control.estimators.calibrating.parameters import Parameters
 from laglab_control.estimators.kalman import Belief
-from laglab_control.estimators.parameters import Parameters
 from laglab_control.model import Matrix, Vector, constant
 from laglab_control.motion import STILL, Motion, Way, compose
 from laglab_control.robot import RobotModel

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from laglab_control.estimators.parameters import Taken
+from laglab_control.estimators.calibrating.parameters import Taken
 from laglab_control.model import Vector
 
 

@@ -6,9 +6,9 @@ from functools import cached_property
 from typing import Generic, NamedTuple, TypeVar
 
 from laglab_control.estimators import kalman
+from laglab_control.estimators.delayed.windows import Windows
 from laglab_control.estimators.interface import Estimator, InForce, Measured, by_sampling
 from laglab_control.estimators.kalman import Belief, Innovation
-from laglab_control.estimators.windows import Windows
 from laglab_control.model import Matrix, Model, Vector
 from laglab_control.past.log import Log, append, cut, logged
 from laglab_control.past.memory import MEMORY

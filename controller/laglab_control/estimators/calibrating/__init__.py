@@ -1,0 +1,1 @@
+"""Estimators that learn how the robot differs from its model, besides its pose."""
