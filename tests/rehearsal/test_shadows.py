@@ -59,3 +59,13 @@ def test_one_that_diverges_ends_early_and_quietly():
     done = laglab.run("fig6", diverging | {"estimator.compare": ["popf"]})
     shadow = done.trace["x_popf"]
     assert np.abs(shadow[np.isfinite(shadow)]).max() > 1e6
+
+
+def test_of_a_long_run_it_is_said_what_takes_so_long(ended, tmp_path, monkeypatch):
+    monkeypatch.setattr("laglab.commands.runs.verdict.LONG", 50)
+    beside = ("--estimator", "delayed-ekf", "--estimator", "ekf", "--transport", "inline")
+    for seconds, said in (("0.5", ""), ("0.6", "what ekf would have said, of 60 ticks ...")):
+        code, _, stderr = ended(
+            "run", "lab", "--duration", seconds, *beside, "--out", tmp_path / seconds
+        )
+        assert (code, stderr.strip()) == (0, said)

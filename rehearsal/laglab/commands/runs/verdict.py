@@ -14,6 +14,9 @@ from laglab.runs.ending import Ending
 from laglab.scenario import Scenario
 from laglab.tables import say, terminal
 
+LONG = 20_000
+"""[ticks] With fewer an estimator beside the loop takes seconds."""
+
 
 def conclude(
     scenario: Scenario,
@@ -28,6 +31,7 @@ def conclude(
     if ending.problem:
         print(f"laglab: {ending.problem}", file=sys.stderr, flush=True)
         _tell(page, ending.problem)
+    _say_what_takes_long(scenario, ending)
     try:
         run = complete(scenario, way, ending, directory)
         _tell(page, run.summary.verdict)
@@ -42,6 +46,12 @@ def conclude(
             raise
         say(f"warning: {error}")
     return ending.exit_code
+
+
+def _say_what_takes_long(scenario: Scenario, ending: Ending) -> None:
+    names = scenario.estimator.compare
+    if names and ending.outcome and ending.outcome.tick > LONG:
+        say(f"what {' and '.join(names)} would have said, of {ending.outcome.tick} ticks ...")
 
 
 def _tell(page: LivePage | None, verdict: str) -> None:
