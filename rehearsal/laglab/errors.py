@@ -38,7 +38,7 @@ class ResultsError(LaglabError):
 
 
 class UndrawableError(ResultsError):
-    """The numbers are too large for a picture; the text names the file."""
+    """There is no picture, such as of numbers that are too large; the text says why."""
 
 
 class NoRunError(ResultsError):

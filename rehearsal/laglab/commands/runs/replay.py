@@ -75,10 +75,10 @@ def replay(
         name: collected(kept_rows(rows, directory / f"{file_name(name)}.csv"))
         for name, rows in asked.items()
     }
+    terminal().print(replays_table(replays, trace))
     save(draw_replays(told, session, replays, trace, width), directory / "replay.png")
     if report:
         _report(replayed_run(tlog.parent, replays), directory)
-    terminal().print(replays_table(replays, trace))
     print(f"results in {out}")
 
 

@@ -3,6 +3,7 @@
 from laglab.results.figures.moving import animation_place, save_animation
 from laglab.results.figures.overlaid import draw_runs, labels
 from laglab.results.figures.saving import FIGURE_FILE, picture_place, save, save_figure
+from laglab.results.figures.settings import plain
 from laglab.results.figures.style import INCHES, Width, legend, line, printed, sheet
 from laglab.results.figures.whole import draw_run, title
 
@@ -17,6 +18,7 @@ __all__ = [
     "legend",
     "line",
     "picture_place",
+    "plain",
     "printed",
     "save",
     "save_animation",

@@ -50,9 +50,9 @@ def save_animation(runs: Sequence[Run], path: Path) -> None:
 
     Raises ResultsError.
     """
-    from matplotlib.animation import FuncAnimation, PillowWriter
-
     with printed():
+        from matplotlib.animation import FuncAnimation, PillowWriter
+
         scene = Scene([shown(run) for run in runs], labels(runs))
         movie = FuncAnimation(
             scene.figure, scene.show, frames=list(scene.times()), init_func=list, blit=False

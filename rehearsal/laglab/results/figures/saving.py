@@ -7,7 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from laglab.errors import PlaceError, UndrawableError
+from laglab.errors import LaglabError, PlaceError, UndrawableError
 from laglab.files import file_place, whole_file
 from laglab.results.figures.style import printed, sheet
 
@@ -42,6 +42,17 @@ def _format(path: Path) -> str:
 
 
 def save_figure(draw_it: Callable[[], Figure], directory: Path) -> None:
-    """Draw a run's figure beside its other results, where there is matplotlib."""
-    if find_spec("matplotlib") is not None:
-        save(draw_it(), directory / FIGURE_FILE)
+    """Draw a run's figure beside its other results, where there is matplotlib.
+
+    Raises: ResultsError, UndrawableError, the latter for whatever else comes in the way.
+    """
+    if find_spec("matplotlib") is None:
+        return
+    path = directory / FIGURE_FILE
+    try:
+        save(draw_it(), path)
+    except LaglabError:
+        raise
+    except Exception as error:  # a library's, fonts', settings': the run is what it is all the same
+        said = " ".join(str(error).split()) or type(error).__name__
+        raise UndrawableError(f"{path} cannot be drawn: {said}") from error

@@ -6,12 +6,11 @@ colours are Okabe's and Ito's, which the colour-blind can tell apart, in an orde
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
-import numpy as np
+from laglab.results.figures.settings import load, plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -95,23 +94,15 @@ def line(number: int) -> Line:
     return LINES[number % len(LINES)]
 
 
-@contextmanager
-def printed() -> Iterator[None]:
+def printed() -> AbstractContextManager[None]:
     """Whatever is drawn within looks so; matplotlib is loaded here, for a side alone does
-    without. Numbers too large for an axis are told when the figure is saved, not by numpy."""
-    from matplotlib import rc_context
-
-    with (
-        rc_context(PRINT),  # type: ignore[arg-type]
-        np.errstate(over="ignore", invalid="ignore"),
-        warnings.catch_warnings(),
-    ):
-        warnings.filterwarnings("ignore", "Glyph .* missing from font")  # a box stands for it
-        yield
+    without."""
+    return plain(PRINT)
 
 
 def sheet(width: float, height: float) -> Figure:
     """A figure of this size [inch] to draw on."""
+    load()
     from laglab.results.figures.picture import Picture
 
     return Picture(figsize=(width, height), layout="constrained")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from laglab.results.figures import plain
 from laglab.scenario import Scenario, changed
 from laglab.studies.maps.grid import Sorted, fields, sorted_into
 from laglab.studies.maps.heat import Map, draw_maps
@@ -37,11 +38,12 @@ def draw_study(
     told = [MeasureValues.by(runs, column) for column in values] or telling(runs)
     into = sorted_into(runs, chosen)
     maps = [Map(each.of, fields(each, into)) for each in told]
-    if chosen.y is None:
-        figure = draw_lines(chosen, into, maps, _line_margin(runs, chosen))
-    else:
-        figure = draw_maps(chosen, into, maps, margins(runs, chosen, into))
-    figure.suptitle(_title(runs, chosen))
+    with plain():
+        if chosen.y is None:
+            figure = draw_lines(chosen, into, maps, _line_margin(runs, chosen))
+        else:
+            figure = draw_maps(chosen, into, maps, margins(runs, chosen, into))
+        figure.suptitle(_title(runs, chosen))
     return figure
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from laglab.interface import run
-from laglab.results.figures import sheet
+from laglab.results.figures import plain, sheet
 from laglab.results.numbers import HEADING_BOUND, goal_errors, robot_pose
 from laglab.scenario import load
 from laglab.studies.reproduce.claim import Claim, Evidence
@@ -57,14 +57,15 @@ def late_commands() -> Evidence:
 
 
 def _swings(swing: list[float], margin: int) -> bytes:
-    figure = sheet(7, 3)
-    axes = figure.subplots()
-    axes.semilogy(DELAYS, swing, "o-")
-    axes.axvline(margin + 0.5, color="black", label="delay margin, computed")
-    axes.axhline(HEADING_BOUND, color="grey", linestyle=":", label="converged below")
-    axes.set(xlabel="n + m [ticks]", ylabel="largest |θ| of the last second [rad]")
-    axes.legend()
-    axes.grid(alpha=0.3)
+    with plain():
+        figure = sheet(7, 3)
+        axes = figure.subplots()
+        axes.semilogy(DELAYS, swing, "o-")
+        axes.axvline(margin + 0.5, color="black", label="delay margin, computed")
+        axes.axhline(HEADING_BOUND, color="grey", linestyle=":", label="converged below")
+        axes.set(xlabel="n + m [ticks]", ylabel="largest |θ| of the last second [rad]")
+        axes.legend()
+        axes.grid(alpha=0.3)
     return png(figure)
 
 

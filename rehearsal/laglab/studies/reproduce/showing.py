@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from laglab.results.figures import plain
 from laglab.scenario import Overrides, load
 from laglab.studies.judged import joined
 from laglab.studies.maps import StudyRuns, runs_of
@@ -28,7 +29,8 @@ def png(figure: Figure) -> bytes:
     """The picture as a file."""
     file = BytesIO()
     density = min(MOST_WIDTH / figure.get_figwidth(), MOST_DENSITY)
-    figure.savefig(file, format="png", dpi=density)
+    with plain():
+        figure.savefig(file, format="png", dpi=density)
     return file.getvalue()
 
 
