@@ -18,92 +18,10 @@ from laglab.scenario import load
 from laglab_gateway import LinkRow
 
 from .measured import HOW, imported
+from .printed import LINUX, pings
 
 Laglab = Callable[..., subprocess.CompletedProcess[str]]
 Refused = Callable[..., str]
-
-LINUX = """\
-PING 192.0.2.7 (192.0.2.7) 56(84) bytes of data.
-[1700000000.000100] 64 bytes from 192.0.2.7: icmp_seq=1 ttl=57 time=10.0 ms
-[1700000000.200100] 64 bytes from 192.0.2.7: icmp_seq=2 ttl=57 time=14.0 ms
-[1700000000.400000] no answer yet for icmp_seq=3
-[1700000000.600100] 64 bytes from 192.0.2.7: icmp_seq=4 ttl=57 time=12 ms
-[1700000000.600200] 64 bytes from 192.0.2.7: icmp_seq=4 ttl=57 time=13 ms (DUP!)
-
---- 192.0.2.7 ping statistics ---
-5 packets transmitted, 3 received, +1 duplicates, 40% packet loss, time 803ms
-rtt min/avg/max/mdev = 10.0/12.0/14.0/1.6 ms
-"""
-MACOS = """\
-PING example.net (192.0.2.7): 56 data bytes
-64 bytes from 192.0.2.7: icmp_seq=0 ttl=57 time=10.000 ms
-64 bytes from 192.0.2.7: icmp_seq=1 ttl=57 time=14.000 ms
-Request timeout for icmp_seq 2
-64 bytes from 192.0.2.7: icmp_seq=3 ttl=57 time=12.000 ms
-
---- example.net ping statistics ---
-5 packets transmitted, 3 packets received, 40.0% packet loss
-"""
-BUSYBOX = """\
-64 bytes from 192.0.2.7: seq=0 ttl=57 time=10.000 ms
-64 bytes from 192.0.2.7: seq=1 ttl=57 time=14.000 ms
-64 bytes from 192.0.2.7: seq=3 ttl=57 time=12.000 ms
-5 packets transmitted, 3 packets received, 40% packet loss
-"""
-WINDOWS = """\
-Pinging 192.0.2.7 with 32 bytes of data:
-Reply from 192.0.2.7: bytes=32 time=10ms TTL=57
-Reply from 192.0.2.7: bytes=32 time=14ms TTL=57
-Request timed out.
-Reply from 192.0.2.7: bytes=32 time=12ms TTL=57
-Request timed out.
-"""
-
-
-@pytest.mark.parametrize(
-    ("printed", "interval"), [(LINUX, 0.2), (MACOS, 1.0), (BUSYBOX, 1.0), (WINDOWS, 1.0)]
-)
-def test_ping_is_halved(tmp_path: Path, printed: str, interval: float) -> None:
-    measured = imported(tmp_path, printed)
-    np.testing.assert_allclose(measured.command.delay, [0.005, 0.007, np.nan, 0.006, np.nan])
-    np.testing.assert_allclose(measured.measurement.delay, [0.005, 0.007, 0.007, 0.006, 0.006])
-    assert measured.interval == pytest.approx(interval, abs=0.01)
-    assert "half of a round trip" in measured.notes[0]
-    assert "counts as a lost command" in measured.notes[1]
-    assert (measured.command.size, measured.measurement.size) == (121, 75)
-
-
-def test_a_long_ping_s_numbers_go_on_where_they_wrap(tmp_path: Path) -> None:
-    lines = (f"64 bytes from x: icmp_seq={k % 65536} ttl=5 time=1 ms" for k in range(1, 70_000, 2))
-    assert len(imported(tmp_path, "\n".join(lines)).command.delay) == 69_999
-
-
-def pings(*numbers: int) -> str:
-    return "".join(f"64 bytes from x: icmp_seq={k % 65536} ttl=5 time=1 ms\n" for k in numbers)
-
-
-@pytest.mark.parametrize(
-    ("printed", "lost"),
-    [
-        (pings(40_000, 40_001, 40_003), [2]),
-        (pings(65_534, 65_535, 65_537, 65_538), [2]),
-        ("PING x\n" + pings(65_535, 65_536), []),
-        (pings(40_000, 40_001) + "40001 packets transmitted, 2 received, time 40000ms\n", []),
-        ("PING x\n" + pings(3, 4) + "5 packets transmitted, 2 received, time 4000ms\n", [0, 1, 4]),
-        ("PING x\nRequest timeout for icmp_seq 0\n" + pings(1, 2), [0]),
-        (pings(1) + "no answer yet for icmp_seq=2\n", [1]),
-    ],
-)
-def test_a_ping_may_begin_at_any_number(tmp_path: Path, printed: str, lost: list[int]) -> None:
-    command = imported(tmp_path, printed).command
-    assert np.flatnonzero(command.lost).tolist() == lost
-    assert len(command.delivered) == printed.count("time=1 ms")
-
-
-def test_a_long_line_costs_no_more_than_it_is_long(tmp_path: Path) -> None:
-    # By an expression that goes back at each of them this would take a quarter of an hour.
-    lines = "seq=1 " * 100_000 + "\n" + "time=3 seq=1 " * 100_000 + "\n"
-    assert len(imported(tmp_path, lines + pings(1, 2)).command.delay) == 2
 
 
 def test_resampling_gives_a_frame_a_tick(tmp_path: Path) -> None:

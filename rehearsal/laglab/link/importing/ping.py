@@ -17,7 +17,7 @@ NUMBER = re.compile(r"\b(?:icmp_)?seq[= ](\d{1,10})\b")
 AT = re.compile(r"^\[(\d{1,12}\.\d+)\] ")
 TIME = re.compile(r"\btime[=<](\d{1,9}(?:\.\d+)?) ?ms")
 WINDOWS = re.compile(r"^Reply from .*time[=<](?P<ms>\d{1,9})ms|^Request timed out")
-HEADING = "PING "
+HEADING = re.compile(r"^PING6?[ (]")
 SENT = re.compile(r"^(\d{1,15}) packets transmitted")
 TOOK = re.compile(r"\btime (\d{1,15}) ?ms")
 USUAL = 1.0
@@ -46,6 +46,8 @@ def is_ping(text: str) -> bool:
 def read_ping(text: str, how: How, name: str) -> MeasuredLink:
     """Halves of round trips. Raises LinkFileError: nothing came back, or too much did."""
     lines = _lines(text)
+    if (count := _outputs(lines)) > 1:
+        raise LinkFileError(f"{name}: {count} outputs of ping in one file: give one at a time")
     told = list(_told(lines))
     took = _by_number(told, lines, name) if told else _in_order(lines)
     if np.isnan(took).all():
@@ -60,6 +62,17 @@ def read_ping(text: str, how: How, name: str) -> MeasuredLink:
 
 def _lines(text: str) -> list[str]:
     return [line for line in text.splitlines() if len(line) <= LONGEST_LINE]
+
+
+def _outputs(lines: list[str]) -> int:
+    """How many pings printed this: each begins with a heading and ends with what it has sent, but
+    of the first and the last there may be a part."""
+    count, going_on = 0, False
+    for line in lines:
+        heading, sent = HEADING.match(line), SENT.match(line)
+        count += bool(heading or (not going_on and (sent or NUMBER.search(line))))
+        going_on = not sent and bool(going_on or heading or NUMBER.search(line))
+    return count
 
 
 def _told(lines: list[str]) -> Iterator[_Numbered]:
@@ -93,7 +106,7 @@ def _range(told: list[_Numbered], lines: list[str]) -> tuple[int, int]:
     first = min(each.number for each in told)
     last = max(each.number for each in told)
     sent = next((int(found[1]) for line in lines if (found := SENT.match(line))), 0)
-    begins = first <= 1 or any(line.startswith(HEADING) for line in lines)
+    begins = first <= 1 or any(map(HEADING.match, lines))
     if begins and last <= sent:
         first = min(first, 1)
         last = max(last, first + sent - 1)
