@@ -1,7 +1,8 @@
 """What `ping` prints, on Linux, BSD, macOS, BusyBox and Windows."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +25,8 @@ USUAL = 1.0
 """[s] From ping to ping, where nothing says otherwise."""
 WRAP = 65536
 """A ping's number travels in 16 bits."""
+LATE = 4096
+"""Numbers: an answer is at most so far behind others."""
 
 
 class _Numbered(NamedTuple):
@@ -48,7 +51,7 @@ def read_ping(text: str, how: How, name: str) -> MeasuredLink:
     lines = _lines(text)
     if (count := _outputs(lines)) > 1:
         raise LinkFileError(f"{name}: {count} outputs of ping in one file: give one at a time")
-    told = list(_told(lines))
+    told = list(_told(lines, name))
     took = _by_number(told, lines, name) if told else _in_order(lines)
     if np.isnan(took).all():
         raise LinkFileError(
@@ -75,18 +78,57 @@ def _outputs(lines: list[str]) -> int:
     return count
 
 
-def _told(lines: list[str]) -> Iterator[_Numbered]:
+def _told(lines: list[str], name: str) -> Iterator[_Numbered]:
+    """Raises LinkFileError: which of them came first is not clear."""
+    printed = list(_printed(lines))
+    pace = _pace(printed)
+    lowest = 0 if _begins(lines) else -WRAP
     last = None
-    for line in lines:
-        if (found := NUMBER.search(line)) is None:
-            continue
-        number = int(found[1])
+    for each in printed:
         if last is not None:
-            number += round((last - number) / WRAP) * WRAP
-        last = number
-        time, at = TIME.search(line, found.end()), AT.match(line)
-        took = 1e-3 * float(time[1]) if time else np.nan
-        yield _Numbered(number, took, float(at[1]) if at else None)
+            step = _step(last.number, each.number, _elapsed(last, each, pace), lowest)
+            if step is None:
+                raise LinkFileError(
+                    f"{name}: {last.number % WRAP} is followed by {each.number}: give one ping's "
+                    "output at a time; after a long outage only the times of ping -D tell"
+                )
+            each = each._replace(number=last.number + step)
+        yield each
+        last = each
+
+
+def _printed(lines: list[str]) -> Iterator[_Numbered]:
+    """With the numbers that travelled."""
+    for line in lines:
+        if found := NUMBER.search(line):
+            time, at = TIME.search(line, found.end()), AT.match(line)
+            took = 1e-3 * float(time[1]) if time else np.nan
+            yield _Numbered(int(found[1]), took, float(at[1]) if at else None)
+
+
+def _elapsed(last: _Numbered, then: _Numbered, pace: float | None) -> float | None:
+    """[pings] None: no times tell."""
+    if pace is None or last.at is None or then.at is None:
+        return None
+    return (then.at - last.at) / pace
+
+
+def _step(last: int, number: int, elapsed: float | None, lowest: int) -> int | None:
+    """From the last one to this, which travelled as `number`, `elapsed` [pings] later if that is
+    known; None: nobody knows. None is below `lowest`. What is a little further on is that: whose
+    ping was stopped meanwhile has no numbers for that time."""
+    on = (number - last) % WRAP
+    if on <= LATE:
+        return on
+    if elapsed is not None:
+        return on + WRAP * max(-1, round((elapsed - on) / WRAP))
+    if WRAP - on <= LATE and last + on - WRAP >= lowest:
+        return on - WRAP
+    return on if number > last % WRAP or on < WRAP // 2 else None
+
+
+def _begins(lines: list[str]) -> bool:
+    return any(map(HEADING.match, lines))
 
 
 def _by_number(told: list[_Numbered], lines: list[str], name: str) -> Array:
@@ -106,8 +148,7 @@ def _range(told: list[_Numbered], lines: list[str]) -> tuple[int, int]:
     first = min(each.number for each in told)
     last = max(each.number for each in told)
     sent = next((int(found[1]) for line in lines if (found := SENT.match(line))), 0)
-    begins = first <= 1 or any(map(HEADING.match, lines))
-    if begins and last <= sent:
+    if (first <= 1 or _begins(lines)) and last <= sent:
         first = min(first, 1)
         last = max(last, first + sent - 1)
     return first, last
@@ -121,10 +162,21 @@ def _in_order(lines: list[str]) -> Array:
 
 def _interval(told: list[_Numbered], lines: list[str], count: int) -> tuple[float, bool]:
     """[s] From ping to ping, and whether the output tells."""
-    times = [each.at for each in told if each.at is not None and not np.isnan(each.took)]
-    if len(times) > 1:
-        return float(np.median(np.diff(times))), True
+    if pace := _pace([each for each in told if not np.isnan(each.took)]):
+        return pace, True
     ends = (TOOK.search(line) for line in lines if SENT.match(line))
     if count > 1 and (took := next((found for found in ends if found), None)):
         return 1e-3 * int(took[1]) / (count - 1), True
     return USUAL, False
+
+
+def _pace(told: Sequence[_Numbered]) -> float | None:
+    """[s] From ping to ping, by the times of those that follow each other closely."""
+    paces = [
+        (then.at - last.at) / on
+        for last, then in pairwise(told)
+        if last.at is not None and then.at is not None
+        if 0 < (on := (then.number - last.number) % WRAP) <= LATE
+    ]
+    pace = float(np.median(paces)) if paces else 0.0
+    return pace if pace > 0 else None
