@@ -82,14 +82,10 @@ def read_link_log(path: Path) -> dict[Direction, list[LinkRow]]:
     """The rows of each direction. Raises TimelineError when the file is no link log, or tells what
     no run does."""
     try:
-        with path.open(newline="") as file:
-            lines = csv.reader(whole_lines(file))
-            header = next(lines, [])
-            if header != list(LinkRow._fields):
-                columns = LINK_HEADER.strip()
-                raise TimelineError(f"{path} is not a link log: expected the columns {columns}")
-            read = [_row(*cells) for cells in lines]
-    except (OSError, ValueError, TypeError, csv.Error) as error:
+        read = _read(path)
+    except OSError as error:
+        raise TimelineError(f"{path} is not a readable link log: {error.strerror}") from error
+    except (ValueError, csv.Error) as error:
         raise TimelineError(f"{path} is not a readable link log: {error}") from error
     rows = {each: [row for row in read if row.direction == each] for each in DIRECTIONS}
     problem = (
@@ -100,12 +96,26 @@ def read_link_log(path: Path) -> dict[Direction, list[LinkRow]]:
     return rows
 
 
-def _row(
-    direction: str, tick: str, frame: str, copy: str, size: str, fate: str, extra: str
-) -> LinkRow:
-    return LinkRow(
-        direction, int(tick), int(frame), int(copy), int(size), FateKind(fate), float(extra)
-    )
+def _read(path: Path) -> list[LinkRow]:
+    """Also as spreadsheets write it: with a mark before its first line, and empty rows."""
+    with path.open(newline="", encoding="utf-8-sig") as file:
+        lines = csv.reader(whole_lines(file))
+        if next(lines, []) != list(LinkRow._fields):
+            columns = LINK_HEADER.strip()
+            raise TimelineError(f"{path} is not a link log: expected the columns {columns}")
+        return [_row(cells, lines.line_num) for cells in lines if any(map(str.strip, cells))]
+
+
+def _row(cells: Sequence[str], line: int) -> LinkRow:
+    """Raises ValueError, with the line's number."""
+    if len(cells) != len(LinkRow._fields):
+        raise ValueError(f"line {line}: must have {len(LinkRow._fields)} columns")
+    direction, tick, frame, copy, size, fate, extra = cells
+    try:
+        numbers = int(tick), int(frame), int(copy), int(size)
+        return LinkRow(direction, *numbers, FateKind(fate), float(extra))
+    except ValueError as error:
+        raise ValueError(f"line {line}: {error}") from None
 
 
 def _elsewhere(rows: Sequence[LinkRow]) -> str | None:

@@ -18,6 +18,38 @@ def test_what_is_no_link_log_is_refused_by_name(tmp_path: Path, text: str) -> No
         read_link_log(path)
 
 
+HEADER = ",".join(LinkRow._fields)
+ROW = "command,0,0,0,35,delivered,0.0"
+
+
+@pytest.mark.parametrize("text", [f"{HEADER}\n{ROW}\n\n", f"\ufeff{HEADER}\r\n{ROW}\r\n,,,,,,\r\n"])
+def test_a_link_log_is_read_as_editors_and_spreadsheets_write_it(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "link.csv"
+    path.write_text(text, "utf-8", newline="")
+    assert read_link_log(path)["command"] == [LinkRow("command", 0, 0, 0, 35, "delivered", 0.0)]
+
+
+@pytest.mark.parametrize(
+    ("row", "said"),
+    [
+        ("command,0", "line 3: must have 7 columns"),
+        (f"{ROW},1", "line 3: must have 7 columns"),
+        (ROW.replace("35", "many"), "line 3: invalid literal for int.*'many'"),
+        (ROW.replace("delivered", "eaten"), "line 3: 'eaten' is not a valid FateKind"),
+    ],
+)
+def test_the_line_that_cannot_be_read_is_named(tmp_path: Path, row: str, said: str) -> None:
+    path = tmp_path / "link.csv"
+    path.write_text(f"{HEADER}\n{ROW}\n{row}\n")
+    with pytest.raises(TimelineError, match=rf"link\.csv is not a readable link log: {said}"):
+        read_link_log(path)
+
+
+def test_a_link_log_that_is_not_there_is_told_in_words(tmp_path: Path) -> None:
+    with pytest.raises(TimelineError, match=r"log: No such file or directory$"):
+        read_link_log(tmp_path / "none.csv")
+
+
 UNBELIEVABLE = {
     "0,0,0,35,delivered,nan": "extra must be from 0",
     "0,0,0,35,delivered,inf": "extra must be from 0",
