@@ -11,12 +11,15 @@ import laglab
 
 COMPARE = ("compare", "run", "--out", "both.png")
 FIGURE = ("figure", "run", "--out", "again.png")
+REPORT = ("report", "run", "--out", "run.html")
+EXPORT = ("export", "run", "--format", "csv", "--out", "exported")
+ANIMATE = ("animate", "run", "--out", "run.gif")
 REPLAY = ("replay", "run/robot.tlog", "--estimator", "popf")
 REPEAT = ("run", "run/scenario.toml", "--timeline", "run/link.csv", "--transport", "inline")
 READ_BY = {
-    "scenario.toml": (COMPARE, REPLAY, REPEAT),
+    "scenario.toml": (COMPARE, FIGURE, REPLAY, REPEAT),
     "summary.json": (COMPARE,),
-    "trace.csv": (COMPARE, REPLAY),
+    "trace.csv": (COMPARE, FIGURE, REPORT, EXPORT, ANIMATE, REPLAY),
     "link.csv": (REPEAT,),
     "robot.tlog": (REPLAY,),
     "shadow-ekf.csv": (COMPARE,),
@@ -31,15 +34,16 @@ JUNK = {
     "nested TOML": b"x = " + b"[" * 3000,
 }
 GOOD_AS_FAR_AS_IT_GOES = {
-    ("scenario.toml", "empty"),
-    ("trace.csv", "half"),
-    ("arrivals.csv", "half"),
-    ("link.csv", "half"),
-    ("claims.csv", "half"),
-    ("shadow-ekf.csv", "half"),
-    ("robot.tlog", "half"),
+    ("scenario.toml", "empty"): (REPEAT,),
+    ("trace.csv", "half"): (REPLAY,),
+    ("arrivals.csv", "half"): (COMPARE, FIGURE),
+    ("link.csv", "half"): (REPEAT,),
+    ("claims.csv", "half"): (FIGURE,),
+    ("shadow-ekf.csv", "half"): (COMPARE,),
+    ("robot.tlog", "half"): (REPLAY,),
 }
-"""An empty scenario runs by default; a record that was cut off is that of a shorter run."""
+"""An empty scenario that somebody names runs by default; a record that was cut off is that of a
+shorter run, but where the summary says how long the run was."""
 DAMAGES = [*JUNK, "a folder", "half", "huge numbers"]
 
 
@@ -80,7 +84,8 @@ def test_a_damaged_file_is_told_in_a_line(
     damage(copied / name, how)
     for arguments in READ_BY[name]:
         code, _, errors = ended(*arguments)
-        assert code == (0 if (name, how) in GOOD_AS_FAR_AS_IT_GOES else 2), errors
+        good = arguments in GOOD_AS_FAR_AS_IT_GOES.get((name, how), ())
+        assert code == (0 if good else 2), errors
         if code:
             assert len(errors.splitlines()) == 1, errors
             assert "run/" in errors
@@ -101,6 +106,26 @@ def test_numbers_that_no_picture_has_room_for_are_told_in_a_line(
     assert code == 4, errors
     assert len(errors.splitlines()) == 1
     assert "cannot be drawn" in errors
+
+
+@pytest.mark.parametrize(
+    ("said", "instead", "told"),
+    [
+        ('kind = "delayed-ekf"', 'kind = "popf"', "estimator.kind is popf, but delayed-ekf ran"),
+        ("command_delay = 10", "command_delay = 1", "link.command_delay is 1, but 10 ran"),
+        ("seed = 1", "seed = 7", "seed is 7, but 1 ran"),
+    ],
+)
+def test_a_scenario_that_is_not_the_one_that_ran_is_told(
+    said: str, instead: str, told: str, copied: Path
+) -> None:
+    path = copied / "scenario.toml"
+    text = path.read_text("utf-8")
+    path.write_text(text.replace(said, instead), "utf-8")
+    with pytest.raises(laglab.LaglabError, match=told):
+        laglab.open_run(copied)
+    path.write_text(text.replace('name = "lab-radio"', 'name = "mine"'), "utf-8")
+    assert laglab.open_run(copied).scenario.name == "mine"
 
 
 @pytest.mark.parametrize("how", ["empty", "binary", "a folder", "gone"])

@@ -9,6 +9,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from laglab.errors import NoRunError, ResultsError
 from laglab.extras import DRAWING, FRAMES, require
 from laglab.results.columns import (
@@ -23,8 +25,8 @@ from laglab.results.columns import (
 )
 from laglab.results.figures import Width, draw_run
 from laglab.results.shadows import Shadow, read_shadow, shadow_file, shadow_pieces, shadowing
-from laglab.results.summary import Summary, read_summary
-from laglab.scenario import Scenario, load
+from laglab.results.summary import SUMMARY_FILE, Summary, read_summary
+from laglab.scenario import Overrides, Scenario, load
 from laglab_gateway import (
     ARRIVALS_FILE,
     CLAIMS_FILE,
@@ -34,7 +36,6 @@ from laglab_gateway import (
     TRACE_FILE,
     Trace,
     TraceError,
-    read_trace,
     trace_pieces,
 )
 
@@ -84,7 +85,7 @@ class Run:
     @cached_property
     def trace(self) -> Trace:
         """All columns, each of shape (ticks + 1,). Raises NoRunError."""
-        trace = self.kept.trace if self.kept else self._read_trace()
+        trace = joined(self.pieces())
         for name in self.scenario.estimator.compare:
             trace = trace | shadowing(trace, self._shadow(name), name)
         return trace
@@ -182,12 +183,21 @@ class Run:
         if self.kept:
             yield self.kept.trace
             return
+        end = np.nan
         with _as_ours():
-            yield from trace_pieces(self._folder / TRACE_FILE)
+            for piece in trace_pieces(self._folder / TRACE_FILE):
+                yield piece
+                end = float(piece["time"][-1])
+        self._must_end(end)
 
-    def _read_trace(self) -> Trace:
-        with _as_ours():
-            return read_trace(self._folder / TRACE_FILE)
+    def _must_end(self, end: float) -> None:
+        """Raises NoRunError: the trace ends [s] elsewhere than the run did."""
+        Ts, ticks = self.scenario.sample_time, self.summary.ticks
+        if not abs(end / Ts - ticks) < 0.5:
+            raise NoRunError(
+                f"{self._folder / TRACE_FILE} ends after {end:g} s, the run had {ticks} ticks of "
+                f"{Ts:g} s, says {SUMMARY_FILE}: it was cut off since, or is another run's"
+            )
 
     def _table(self, name: str) -> Columns:
         return (
@@ -234,4 +244,34 @@ def open_run(directory: str | Path) -> Run:
     summary = read_summary(folder)
     if not (folder / SCENARIO_FILE).is_file():
         raise NoRunError(f"{folder / SCENARIO_FILE} is not there: a run leaves one")
-    return Run(load(str(folder / SCENARIO_FILE)), summary, folder)
+    scenario = kept_scenario(folder)
+    for key, said, ran in _told_twice(scenario, summary):
+        if said != ran:
+            raise NoRunError(
+                f"{folder / SCENARIO_FILE}: {key} is {said}, but {ran} ran, says {SUMMARY_FILE}: "
+                "it was cut off or changed since"
+            )
+    return Run(scenario, summary, folder)
+
+
+def kept_scenario(folder: Path, overrides: Overrides | None = None) -> Scenario:
+    """That of the run whose files are in the folder, but for `overrides`.
+
+    Raises: ScenarioError, as `load`; NoRunError: the file says nothing, as no run leaves it.
+    """
+    path = folder / SCENARIO_FILE
+
+    def refuse(_: str) -> None:
+        raise NoRunError(f"{path} says nothing of what ran: it was emptied since")
+
+    return load(str(path), overrides, refuse)
+
+
+def _told_twice(scenario: Scenario, summary: Summary) -> Iterator[tuple[str, object, object]]:
+    """What the scenario says and what ran; a side alone does not know all of the other."""
+    if summary.side != "robot":
+        yield "estimator.kind", scenario.estimator.kind, summary.estimator
+        yield "law.kind", scenario.law.kind, summary.law
+    yield "link.command_delay", scenario.link.n, summary.n
+    yield "link.measurement_delay", scenario.link.m, summary.m
+    yield "seed", scenario.seed, summary.seed

@@ -12,7 +12,7 @@ from laglab.files import folder_place
 from laglab.results.figures import save
 from laglab.results.place import REPORT_FILE
 from laglab.results.replaying import draw_replays, replayed_run, replays_table
-from laglab.results.run import SCENARIO_FILE, Run
+from laglab.results.run import Run, kept_scenario
 from laglab.results.shadows import collected, file_name, kept_rows, shadow_rows
 from laglab.scenario import load
 from laglab.scenario.tables.estimator import COMPARABLE
@@ -63,7 +63,7 @@ def replay(
         require(SEEING)
     tlog = tlog / TLOG_FILE if tlog.is_dir() else tlog
     overrides = {} if p0 is None else {"estimator.initial_covariance": p0}
-    told = load(scenario or str(tlog.parent / SCENARIO_FILE), overrides)
+    told = load(scenario, overrides) if scenario else kept_scenario(tlog.parent, overrides)
     session = list(read_session(tlog))
     if not session:
         raise ScenarioError(f"{tlog}: no tick of a robot in it")
