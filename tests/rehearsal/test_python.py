@@ -52,6 +52,10 @@ def test_the_mathematics_load_numpy_and_little_else() -> None:
     assert done.stdout == "[]\n"
 
 
+def test_a_run_in_memory_is_spelled_without_its_arrays() -> None:
+    assert "array(" not in repr(laglab.run("fig6", {"duration": 0.2}))
+
+
 @pytest.mark.slow
 def test_a_plain_script_needs_no_guard_and_prints_nothing_of_ours(tmp_path: Path) -> None:
     """The blocks of the pages one after the other, then runs over UDP and a pty."""

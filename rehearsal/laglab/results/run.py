@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -80,7 +80,7 @@ class Run:
     summary: Summary
     directory: Path | None
     """Where its files are; None: it was kept in memory alone."""
-    kept: Kept | None = None
+    kept: Kept | None = field(default=None, repr=False)
 
     @cached_property
     def trace(self) -> Trace:
