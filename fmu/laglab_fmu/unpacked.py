@@ -6,9 +6,18 @@ import shutil
 import tempfile
 from pathlib import Path
 
+from laglab_fmu.errors import CallError
+
 
 def own_folder() -> Path:
-    """For one FMU of this process; not made yet."""
+    """For one FMU of this process; not made yet.
+
+    Raises CallError: FMPy goes to a library's folder and could not come back.
+    """
+    try:
+        Path.cwd()
+    except OSError as error:
+        raise CallError("the current directory is gone: go to one that is there") from error
     return Path(tempfile.gettempdir(), f"{_prefix()}{secrets.token_hex(8)}")
 
 

@@ -13,7 +13,7 @@ from laglab.command import main
 from laglab.plants.proposal import words
 from laglab_fmu import fleet_path, fmu_path
 
-from .building import rover
+from .building import CO_SIMULATION, MODEL_EXCHANGE, rover
 
 Checked = tuple[int, str, str]
 Check = Callable[..., Checked]
@@ -143,6 +143,24 @@ def test_what_cannot_be_used(check: Check, tmp_path: Path, library: Path) -> Non
     code, _, err = check(rover(tmp_path / "away.fmu", library, platform="win64"))
     assert code == 2
     assert "no binary for this machine (linux64), but: win64" in err
+
+
+def test_an_fmu_that_is_unpacked_is_told_so(check: Check, tmp_path: Path) -> None:
+    (tmp_path / "rover.fmu").mkdir()
+    code, _, err = check(tmp_path / "rover.fmu")
+    said = "rover.fmu is a folder: an FMU is a zip archive of what is in it\n"
+    assert (code, err) == (2, f"laglab: {tmp_path}/{said}")
+
+
+@pytest.mark.parametrize("interface", [CO_SIMULATION, MODEL_EXCHANGE])
+def test_a_library_that_is_not_named_is_told(
+    check: Check, tmp_path: Path, library: Path, interface: str
+) -> None:
+    nameless = interface.replace('modelIdentifier="rover"', "")
+    code, _, err = check(rover(tmp_path / "rover.fmu", library, [nameless]))
+    assert code == 2
+    assert err.endswith(" has no modelIdentifier, the name of its library\n")
+    assert err.count("\n") == 1
 
 
 def test_names_that_say_nothing_are_asked_for(check: Check, tmp_path: Path, library: Path) -> None:

@@ -230,6 +230,21 @@ def test_what_finds_no_room_is_named(
     assert not {"my-law", "a.gif"} & {path.name for path in here.iterdir()}
 
 
+@pytest.mark.skipif(os.name != "posix", reason="no folder is deleted under who is in it here")
+def test_a_current_directory_that_is_gone_is_told(here: Path) -> None:
+    (here / "gone").mkdir()
+    command = f"cd gone && rmdir ../gone && {sys.executable} -m laglab {' '.join(RUN)}"
+    done = subprocess.run(
+        ["sh", "-c", f"{command} --out {here}/run"],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert a_line(done.stderr, "laglab: the current directory is gone: go to one that is there")
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device here")
 def test_a_parser_for_which_there_is_no_room_is_told(here: Path) -> None:
     (here / "parser").mkdir()

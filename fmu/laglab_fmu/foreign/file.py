@@ -7,7 +7,12 @@ from pathlib import Path, PurePosixPath
 from typing import Literal
 
 import fmpy
-from fmpy.model_description import ModelDescription, ModelVariable, ValidationError
+from fmpy.model_description import (
+    InterfaceType,
+    ModelDescription,
+    ModelVariable,
+    ValidationError,
+)
 
 from laglab_fmu.compiler import host_platform
 from laglab_fmu.errors import FmuFileError
@@ -33,6 +38,8 @@ class FmuFile:
     @classmethod
     def read(cls, path: Path) -> "FmuFile":
         """Reads an FMU. Raises FmuFileError: there is no such file, or it is none of FMI 2 or 3."""
+        if path.is_dir():
+            raise FmuFileError(f"{path} is a folder: an FMU is a zip archive of what is in it")
         if not path.is_file():
             raise FmuFileError(f"{path}: there is no such file")
         try:
@@ -61,16 +68,18 @@ class FmuFile:
     @property
     def interfaces(self) -> tuple[Interface, ...]:
         """Those that can be used here, the one that is used first."""
-        there: dict[Interface, object] = {
-            "co-simulation": self.description.coSimulation,
-            "model exchange": self.description.modelExchange,
-        }
-        return tuple(name for name, offered in there.items() if offered is not None)
+        return tuple(self._offered)
 
     def interface(self) -> Interface:
-        """The one that is used. Raises FmuFileError: there is none, or no binary for here."""
+        """The one that is used. Raises FmuFileError: there is none, it does not say which library
+        it is in, or that is not there for this machine."""
         if not self.interfaces:
             raise FmuFileError(f"{self.path} has neither co-simulation nor model exchange")
+        if not self._offered[self.interfaces[0]].modelIdentifier:
+            raise FmuFileError(
+                f"{self.path}: its modelDescription.xml: {self.interfaces[0]} has no "
+                "modelIdentifier, the name of its library"
+            )
         if self.folder not in self.platforms:
             others = ", ".join(self.platforms) or "none at all"
             compiled = f"; `fmpy compile {self.path.name}` makes one" if self.has_sources else ""
@@ -79,6 +88,14 @@ class FmuFile:
                 f"{others}{compiled}"
             )
         return self.interfaces[0]
+
+    @property
+    def _offered(self) -> dict[Interface, InterfaceType]:
+        there: dict[Interface, InterfaceType | None] = {
+            "co-simulation": self.description.coSimulation,
+            "model exchange": self.description.modelExchange,
+        }
+        return {name: offered for name, offered in there.items() if offered is not None}
 
     @property
     def folder(self) -> str:
