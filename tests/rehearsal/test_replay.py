@@ -139,3 +139,18 @@ def test_of_a_run_that_was_killed_the_log_is_named(run, tmp_path, refused):
     (killed / "summary.json").unlink()
     line = refused("figure", killed, "--out", "x.png")
     assert f"can be replayed: laglab replay {killed / 'robot.tlog'}" in line
+
+
+def test_a_replay_is_not_mixed_with_another_runs_results(replay, refused, run, tmp_path):
+    ekf = ("--estimator", "ekf", "--report", "--out")
+    other = shutil.copytree(run, tmp_path / "other")
+    before = {each.name for each in other.iterdir()}
+    line = refused("replay", run / "robot.tlog", *ekf, other)
+    assert f"--out {other}: another run's results are there already (scenario.toml, " in line
+    assert {each.name for each in other.iterdir()} == before
+    assert replay(other / "robot.tlog", *ekf, other) == 0, "the log's own run"
+    for _ in range(2):
+        assert replay(run / "robot.tlog", *ekf, tmp_path / "again") == 0, "an earlier replay"
+    (tmp_path / "study").mkdir()
+    (tmp_path / "study" / "study.toml").touch()
+    assert "a study's results" in refused("replay", run / "robot.tlog", *ekf, tmp_path / "study")

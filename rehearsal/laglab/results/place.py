@@ -1,7 +1,7 @@
 """Where a run's results go."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -27,13 +27,8 @@ def place(scenario: Scenario, out: Path | None, force: bool = False, suffix: str
         directory = fresh(Path("runs"), re.sub(r"[^\w.-]", "-", scenario.name + suffix))
     else:
         directory = folder_place("--out", out)
-        if (directory / STUDY_FILE).exists() or (directory / STUDY_CELLS).is_dir():
-            raise PlaceError(f"--out {out}: a study's results are there: take another folder")
-        if not force and (taken := [name for name in OURS if (directory / name).exists()]):
-            raise PlaceError(
-                f"--out {out}: another run's results are there already ({', '.join(taken)}): take "
-                "another folder, or say --force (in Python force=True)"
-            )
+        otherwise = "take another folder, or say --force (in Python force=True)"
+        _refuse_taken(out, () if force else OURS, otherwise)
     try:
         shadows = directory.glob("shadow-*.csv")
         for old in [*(directory / name for name in OURS), *shadows]:
@@ -45,6 +40,27 @@ def place(scenario: Scenario, out: Path | None, force: bool = False, suffix: str
             (directory / SCENARIO_FILE).unlink(missing_ok=True)
         raise PlaceError(f"cannot write into {directory}: {error.strerror}") from error
     return directory
+
+
+def replay_place(out: Path, log: Path) -> Path:
+    """The folder for what is estimated again, made and writable: that of the log's own run, or one
+    without a run's results. Raises PlaceError."""
+    directory = folder_place("--out", out)
+    if not directory.samefile(log.parent):
+        others = [name for name in OURS if name != REPORT_FILE]  # an earlier replay leaves one, too
+        _refuse_taken(out, others, "take another folder")
+    return directory
+
+
+def _refuse_taken(out: Path, names: Sequence[str], otherwise: str) -> None:
+    """Raises PlaceError: a study's results are there, or a run's under one of these names."""
+    if (out / STUDY_FILE).exists() or (out / STUDY_CELLS).is_dir():
+        raise PlaceError(f"--out {out}: a study's results are there: take another folder")
+    if taken := [name for name in names if (out / name).exists()]:
+        raise PlaceError(
+            f"--out {out}: another run's results are there already ({', '.join(taken)}): "
+            f"{otherwise}"
+        )
 
 
 def withdraw(directory: Path) -> None:

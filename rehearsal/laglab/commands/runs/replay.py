@@ -8,9 +8,8 @@ import typer
 from laglab.commands.options import WidthOption
 from laglab.errors import ScenarioError
 from laglab.extras import DRAWING, SEEING, require
-from laglab.files import folder_place
 from laglab.results.figures import save
-from laglab.results.place import REPORT_FILE
+from laglab.results.place import REPORT_FILE, replay_place
 from laglab.results.replaying import draw_replays, replayed_run, replays_table
 from laglab.results.run import Run, kept_scenario
 from laglab.results.shadows import collected, file_name, kept_rows, shadow_rows
@@ -70,7 +69,7 @@ def replay(
     trace_file = tlog.parent / TRACE_FILE
     trace = read_trace(trace_file) if trace_file.exists() else None
     asked = {name: shadow_rows(told, name, session) for name in estimators}
-    directory = folder_place("--out", out)
+    directory = replay_place(out, tlog)
     replays = {
         name: collected(kept_rows(rows, directory / f"{file_name(name)}.csv"))
         for name, rows in asked.items()
