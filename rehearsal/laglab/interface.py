@@ -10,7 +10,7 @@ from laglab.errors import ResultsError, RunError, ScenarioError
 from laglab.extras import DRAWING, STEPPING, require
 from laglab.progress import progress_of
 from laglab.results.columns import read_columns
-from laglab.results.complete import Way, complete, keep
+from laglab.results.complete import Manner, complete, keep
 from laglab.results.place import place, withdrawn_unless_begun
 from laglab.results.run import Kept, Run
 from laglab.results.shadows import read_shadow, shadow_file
@@ -63,20 +63,20 @@ def run(
         chosen.must_end()  # memory has no room for what does not end
     else:
         require(DRAWING)
-    way = Way(transport=transport, plant=chosen.plant.called)
+    manner = Manner(transport=transport, plant=chosen.plant.called)
     with ExitStack() as stack:
         told = stack.enter_context(progress_of(chosen, progress))
         if transport == "inline" and out is None:
             recorder = MemoryRecorder()
             ending = rehearse_inline(chosen, recorder, told, controller=controller)
-            return _whole(ending, keep(chosen, way, ending, recorder))
+            return _whole(ending, keep(chosen, manner, ending, recorder))
         if out is not None:
             directory = place(chosen, Path(out), force)
             stack.enter_context(withdrawn_unless_begun(directory))
         else:
             directory = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="laglab-")))
         ending = run_into(directory, chosen, transport, told, controller=controller)
-        done = _completed(chosen, way, ending, directory, figure=out is not None)
+        done = _completed(chosen, manner, ending, directory, figure=out is not None)
         return _whole(ending, done if out is not None else _in_memory(done))
 
 
@@ -86,10 +86,12 @@ def _chosen(scenario: Scenario | str | Path, overrides: Mapping[str, object] | N
     return load(str(scenario), overrides)
 
 
-def _completed(scenario: Scenario, way: Way, ending: Ending, directory: Path, figure: bool) -> Run:
+def _completed(
+    scenario: Scenario, manner: Manner, ending: Ending, directory: Path, figure: bool
+) -> Run:
     """Raises as `complete`; when the run had a problem already, that."""
     try:
-        return complete(scenario, way, ending, directory, figure)
+        return complete(scenario, manner, ending, directory, figure)
     except ResultsError as error:
         if ending.problem:
             raise RunError(ending.problem) from error

@@ -54,8 +54,8 @@ THE_STATIONS = "the station's filter"
 """A gateway alone does not know by which its station estimates."""
 
 
-class Way(NamedTuple):
-    """By which way a run was made."""
+class Manner(NamedTuple):
+    """How a run was made."""
 
     side: Side = "both"
     transport: str = "inline"
@@ -63,7 +63,7 @@ class Way(NamedTuple):
 
 
 def complete(
-    scenario: Scenario, way: Way, ending: Ending, directory: Path, figure: bool = True
+    scenario: Scenario, manner: Manner, ending: Ending, directory: Path, figure: bool = True
 ) -> Run:
     """Put summary, shadows and figure beside the record in `directory`.
 
@@ -84,7 +84,7 @@ def complete(
         compared = {name: _shadowed(scenario, name, directory, failed) for name in names}
     ending = ending.warned(failed)
     following = followed(trace_pieces(directory / TRACE_FILE), scenario.target, numbers.rows)
-    summary = summarise(scenario, way, ending, numbers, compared, following)
+    summary = summarise(scenario, manner, ending, numbers, compared, following)
     write_summary(summary, directory)
     run = Run(scenario, summary, directory)
     return _pictured(run, directory) if figure else run
@@ -101,7 +101,7 @@ def _pictured(run: Run, directory: Path) -> Run:
     return run
 
 
-def keep(scenario: Scenario, way: Way, ending: Ending, recorder: MemoryRecorder) -> Run:
+def keep(scenario: Scenario, manner: Manner, ending: Ending, recorder: MemoryRecorder) -> Run:
     """The same in memory. Raises RunError when there is no record."""
     if not recorder.rows:
         raise nothing_recorded(ending, "the run ended before its first tick was over")
@@ -118,7 +118,7 @@ def keep(scenario: Scenario, way: Way, ending: Ending, recorder: MemoryRecorder)
     numbers = digest([trace], scenario.link.m)
     following = followed([trace], scenario.target, numbers.rows)
     ending = ending.warned(failed)
-    summary = summarise(scenario, way, ending, numbers, compared, following)
+    summary = summarise(scenario, manner, ending, numbers, compared, following)
     return Run(scenario, summary, None, Kept(trace, _tables(recorder), shadows))
 
 
@@ -153,7 +153,7 @@ def _shadowed(scenario: Scenario, name: str, directory: Path, failed: list[str])
 
 def summarise(
     scenario: Scenario,
-    way: Way,
+    manner: Manner,
     ending: Ending,
     numbers: Digest,
     compared: dict[str, Errors | None],
@@ -167,17 +167,17 @@ def summarise(
     converged = completed and has_converged(end, wanted)
     final = _final(end, wanted)
     seconds = ending.loop_seconds
-    estimator = THE_STATIONS if way.side == "robot" else scenario.estimator.kind
+    estimator = THE_STATIONS if manner.side == "robot" else scenario.estimator.kind
     in_loop = {estimator: numbers.rms_error} if compared else {}
     return Summary(
         laglab=laglab_version(),
         versions=versions(),
         scenario=scenario.name,
-        side=way.side,
-        transport=way.transport,
-        plant=way.plant,
+        side=manner.side,
+        transport=manner.transport,
+        plant=manner.plant,
         estimator=estimator,
-        law="unknown" if way.side == "robot" else scenario.law.kind,
+        law="unknown" if manner.side == "robot" else scenario.law.kind,
         n=scenario.link.n,
         m=scenario.link.m,
         seed=scenario.seed,

@@ -9,7 +9,7 @@ import typer
 
 from laglab.extras import SEEING, require
 from laglab.live import LivePage, live_page, place_of
-from laglab.results.complete import Way
+from laglab.results.complete import Manner
 from laglab.scenario import Scenario
 from laglab.tables import say
 
@@ -27,15 +27,17 @@ OpenOption = Annotated[bool, typer.Option("--open", help="Open the live page in 
 
 @contextmanager
 def shown_live(
-    scenario: Scenario, way: Way, live: str | None, open_: bool
+    scenario: Scenario, manner: Manner, live: str | None, open_: bool
 ) -> Iterator[LivePage | None]:
     """The page, its address told; None where nobody asked for one. Raises LiveError."""
     if live is None and not open_:
         yield None
         return
     require(SEEING)
-    origin = f"Side: {way.side}; over {way.transport}; plant {way.plant}; seed {scenario.seed}."
-    alone, measured = way.side == "station", way.plant != scenario.plant.called
+    origin = (
+        f"Side: {manner.side}; over {manner.transport}; plant {manner.plant}; seed {scenario.seed}."
+    )
+    alone, measured = manner.side == "station", manner.plant != scenario.plant.called
     with live_page(scenario, place_of(live or "0"), origin, alone, measured) as page:
         if warning := page.warning:
             say(f"warning: {warning}")

@@ -22,7 +22,7 @@ from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, SEEING, require
 from laglab.interrupts import WRITING, put_off
 from laglab.progress import progress_of
-from laglab.results.complete import Way
+from laglab.results.complete import Manner
 from laglab.results.place import place, withdrawn_unless_begun
 from laglab.runs.plant import check_plant
 from laglab.runs.rehearse import Transport
@@ -66,15 +66,15 @@ def run(
         in_time(scenario.plant.called, partial(check_plant, scenario))
     if said := wrapped_replay(scenario):
         say(said)
-    way = Way("both", transport, plant or scenario.plant.called)
-    with shown_live(scenario, way, live, open_) as page:
+    manner = Manner("both", transport, plant or scenario.plant.called)
+    with shown_live(scenario, manner, live, open_) as page:
         directory = place(scenario, out, force)
         with withdrawn_unless_begun(directory), ExitStack() as last:
             with progress_of(scenario) as told:
                 setup = replace(setup, live=page.line if page else None)
                 ending = run_into(directory, scenario, transport, told, setup)
                 last.enter_context(put_off(WRITING))
-            code = conclude(scenario, way, ending, directory, report, page)
+            code = conclude(scenario, manner, ending, directory, report, page)
     raise typer.Exit(code)
 
 

@@ -20,7 +20,7 @@ from laglab.commands.runs.verdict import conclude
 from laglab.extras import SEEING, STEPPING, require
 from laglab.live import fed, watched_station
 from laglab.progress import progress_of
-from laglab.results.complete import Way
+from laglab.results.complete import Manner
 from laglab.results.place import place, withdrawn_unless_begun
 from laglab.results.station import StationGlance, StationRecord
 from laglab.runs.alone import answer_alone, serve_alone
@@ -99,8 +99,8 @@ def gateway(
     ):
         for each in (link, *watchers):
             refuse_open_door(each, key, unsigned)
-        way = Way("robot", link.name, plant or scenario.plant.called)
-        page = stack.enter_context(shown_live(scenario, way, live, open_))
+        manner = Manner("robot", link.name, plant or scenario.plant.called)
+        page = stack.enter_context(shown_live(scenario, manner, live, open_))
         directory = place(scenario, out, force)
         stack.enter_context(withdrawn_unless_begun(directory))
         last = stack.enter_context(ExitStack())
@@ -126,7 +126,7 @@ def gateway(
                 _warn,
             )
             ending = serve_alone(robot, around, last)
-        code = conclude(scenario, way, ending, directory, report, page)
+        code = conclude(scenario, manner, ending, directory, report, page)
     raise typer.Exit(code)
 
 
@@ -151,9 +151,9 @@ def controller(
     if report:
         require(SEEING)
     with open_endpoint(endpoint) as link, open_station(scenario, key) as (station, receiver):
-        way = Way("station", link.name, "unknown")
+        manner = Manner("station", link.name, "unknown")
         with ExitStack() as stack:
-            page = stack.enter_context(shown_live(scenario, way, live, open_))
+            page = stack.enter_context(shown_live(scenario, manner, live, open_))
             directory = place(scenario, out, force, suffix="-station")
             stack.enter_context(withdrawn_unless_begun(directory))
             last = stack.enter_context(ExitStack())
@@ -167,5 +167,5 @@ def controller(
                 ending = answer_alone(
                     station, listener, scenario.silence_timeout, onlooker, clock, last
                 )
-            code = conclude(scenario, way, ending, directory, report, page)
+            code = conclude(scenario, manner, ending, directory, report, page)
     raise typer.Exit(code)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from laglab.errors import RefusedError, ResultsError, RunError
 from laglab.live import LivePage
-from laglab.results.complete import Way, complete
+from laglab.results.complete import Manner, complete
 from laglab.results.place import REPORT_FILE
 from laglab.results.run import Run
 from laglab.results.table import results_table, warnings
@@ -20,7 +20,7 @@ LONG = 20_000
 
 def conclude(
     scenario: Scenario,
-    way: Way,
+    manner: Manner,
     ending: Ending,
     directory: Path,
     report: bool = False,
@@ -33,7 +33,7 @@ def conclude(
         _tell(page, ending.problem)
     _say_what_takes_long(scenario, ending)
     try:
-        run = complete(scenario, way, ending, directory)
+        run = complete(scenario, manner, ending, directory)
         _tell(page, run.summary.verdict)
         _show(run)
         if report:
