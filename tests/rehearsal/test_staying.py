@@ -56,6 +56,7 @@ def test_a_run_of_what_goes_elsewhere_stays(
     assert not list(away.iterdir())
 
 
+@pytest.mark.slow
 def test_so_do_the_two_sides_alone(
     start: Start,
     listening_port: Callable[["subprocess.Popen[str]"], str],

@@ -247,6 +247,7 @@ def test_a_job_that_kills_whoever_does_it_is_given_up() -> None:
         assert harmless.result(20) == 3
 
 
+@pytest.mark.slow
 def test_a_run_that_kills_its_worker_costs_the_others_nothing(
     laglab: Laglab, tmp_path: Path
 ) -> None:
