@@ -22,7 +22,7 @@ def on_interrupt(handler: Callable[..., object]) -> None:
             signal.signal(number, handler)
 
 
-WRITING = b"writing the results; one more interrupt leaves without them\n"
+FINISHING = b"finishing what is begun; one more interrupt leaves it undone\n"
 
 
 @contextmanager
@@ -35,9 +35,9 @@ def put_off(notice: bytes = b"") -> Iterator[None]:
     def later(number: int, frame: FrameType | None) -> None:
         came.append(number)
         handler = handlers[number]
-        assert callable(handler), "it was not ignored"
-        with suppress(KeyboardInterrupt):
-            handler(number, frame)  # it may keep in mind that it was called
+        if callable(handler):
+            with suppress(KeyboardInterrupt):
+                handler(number, frame)  # it may keep in mind that it was called
         if came[1:]:
             raise KeyboardInterrupt
         with suppress(OSError):

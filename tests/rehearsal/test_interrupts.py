@@ -253,19 +253,35 @@ def test_results_that_are_being_written_are_finished_unless_it_comes_twice(
     assert (tmp_path / "run" / "summary.json").exists() == (times == 1)
 
 
+WAITING = """from pathlib import Path
+from time import sleep
+
+from laglab_control import Ekf
+
+class Filter(Ekf):
+    def start(self, x, P):
+        while not Path("sent").exists() and Path("heard/trace.csv").exists():
+            sleep(0.01)
+        return super().start(x, P)
+"""
+
+
 def test_a_station_whose_run_is_over_writes_its_tables_first(
     start: Start, listening_port: Callable[["subprocess.Popen[str]"], str], tmp_path: Path
 ) -> None:
     """From what it heard, when that is all: which took seconds, and was cut short."""
+    (tmp_path / "waiting.py").write_text(WAITING)
     options = ("fig6", "--duration", "40")
     gateway = start("gateway", *options, "--endpoint", "udpin://127.0.0.1:0", "--out", "run")
     link = ("--endpoint", f"udpout://127.0.0.1:{listening_port(gateway)}")
-    station = start("controller", *options, *link, "--out", "heard")
+    beside = ("--estimator", "popf", "--estimator", "waiting:Filter")
+    station = start("controller", *options, *link, *beside, "--out", "heard")
     wait_for_rows(tmp_path / "heard" / "trace.csv")
     station.send_signal(signal.SIGTERM)
+    (tmp_path / "sent").touch()
     _, errors = station.communicate(timeout=30)
     assert (station.returncode, gateway.wait(30)) == (130, 0)
-    assert "writing the results; one more interrupt leaves without them" in errors
+    assert "finishing what is begun; one more interrupt leaves it undone" in errors
     summary = json.loads((tmp_path / "heard" / "summary.json").read_text())
     assert (summary["outcome"], summary["ticks"]) == ("completed", 4000)
     assert_whole(tmp_path / "heard" / "trace.csv")

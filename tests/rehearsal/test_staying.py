@@ -6,10 +6,14 @@ from pathlib import Path
 
 import pytest
 
+import laglab as lab
+
 Start = Callable[..., "subprocess.Popen[str]"]
 Laglab = Callable[..., "subprocess.CompletedProcess[str]"]
+Ended = Callable[..., tuple[int, str, str]]
 WANDERING = """
 import os
+from tempfile import TemporaryDirectory
 
 from laglab_control import Ekf
 from laglab_gateway import Reading
@@ -33,7 +37,21 @@ class Filter(Ekf):
     def predict(self, state, u):
         os.chdir(AWAY)
         return super().predict(state, u)
+
+class Leaving(Filter):
+    def predict(self, state, u):
+        with TemporaryDirectory() as folder:
+            os.chdir(folder)
+        return super(Filter, self).predict(state, u)
 """
+STUDY = """
+scenario = "lab"
+[grid]
+duration = [0.2]
+"estimator.kind" = ["own:Filter"]
+"estimator.guard" = [false]
+"""
+UNGUARDED = ("--set", "estimator.guard=false")
 OWN = ("--set", "plant.kind=own:Plant", "--estimator", "own:Filter", "--estimator", "own:Filter")
 
 
@@ -53,6 +71,32 @@ def test_a_run_of_what_goes_elsewhere_stays(
     assert "results in run\n" in run.stdout
     there = {path.name for path in (tmp_path / "run").iterdir()}
     assert {"trace.csv", "arrivals.csv", "claims.csv", "summary.json", "figure.png"} <= there
+    assert not list(away.iterdir())
+
+
+def test_it_is_no_matter_whether_it_is_still_there(
+    ended: Ended, tmp_path: Path, away: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(away.parent)
+    own = ("--estimator", "own:Leaving", "--estimator", "own:Leaving", "--duration", "0.2")
+    code, out, errors = ended("run", "lab", *UNGUARDED, *own, "--transport", "inline", "--out", "r")
+    assert (code, errors) == (0, "")
+    assert out.endswith("results in r\n")
+    code, out, errors = ended("replay", "r", "--estimator", "own:Filter", "--out", "again")
+    assert (code, errors) == (0, "")
+    assert out.endswith("results in again\n")
+    assert (tmp_path / "again" / "own%3AFilter.csv").exists()
+    kept = lab.run("lab", {"duration": 0.2, "estimator.compare": ["own:Filter"]})
+    assert kept.summary.compare["own:Filter"] is None  # it ends before the first measurement
+    assert Path.cwd() == tmp_path
+
+
+def test_so_does_a_study(ended: Ended, away: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(away.parent)
+    (away.parent / "study.toml").write_text(STUDY)
+    code, _, errors = ended("sweep", "study.toml", "--workers", "1", "--out", "study")
+    assert code == 0, errors
+    assert len(list((away.parent / "study" / "cells").iterdir())) == 1
     assert not list(away.iterdir())
 
 

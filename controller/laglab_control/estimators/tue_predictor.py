@@ -26,12 +26,15 @@ class TueState(NamedTuple):
 
     tick: int
     x: Vector
-    P: Matrix
-    """P_0: it claims nothing of its own."""
     newest: int
     """When the newest measurement by which it was corrected was sampled."""
     past: Log[Vector]
     """Its poses up to this tick, each as it was before it was corrected there."""
+
+    @property
+    def P(self) -> None:
+        """Nothing is claimed."""
+        return
 
 
 @dataclass(frozen=True)
@@ -54,13 +57,13 @@ class TuePredictor(Estimator[TueState]):
 
     def start(self, x: Vector, P: Matrix) -> TueState:
         """Where the robot is said to be."""
-        return TueState(0, x, P, -1, logged(x))
+        return TueState(0, x, -1, logged(x))
 
     def predict(self, state: TueState, u: Vector) -> TueState:
         """The copy does what the robot does."""
-        tick, x, P, newest, past = state
+        tick, x, newest, past = state
         there = self.model.f(x, u)
-        return TueState(tick + 1, there, P, newest, append(past, there, MEMORY))
+        return TueState(tick + 1, there, newest, append(past, there, MEMORY))
 
     def correct(
         self, state: TueState, measurements: Sequence[Measured], inputs: Sequence[InForce] = ()
@@ -72,7 +75,7 @@ class TuePredictor(Estimator[TueState]):
         return state
 
     def _pulled(self, state: TueState, s: int, z: Vector) -> TueState:
-        tick, x, P, _, past = state
+        tick, x, _, past = state
         index = past.length - 1 - (tick - s)
         if index < 0:
             return state
@@ -85,7 +88,7 @@ class TuePredictor(Estimator[TueState]):
             sine * forward + cosine * sideways,
             Ts * self.k_theta * turn,
         )
-        return TueState(tick, x + np.array(pull), P, s, past)
+        return TueState(tick, x + np.array(pull), s, past)
 
     def innovation(self, state: TueState) -> Innovation | None:
         """It weighs nothing."""

@@ -67,10 +67,10 @@ class SlidingProduct(Generic[Item, Product]):
 
     def __iter__(self) -> Iterator[Item]:
         """The items, oldest first."""
-        for cell in _walk(self._front):
-            yield cell.item
-        for cell in reversed(list(_walk(self._back))):
-            yield cell.item
+        for each in _walk(self._front):
+            yield each.item
+        for each in reversed(list(_walk(self._back))):
+            yield each.item
 
     def _longer(self, item: Item, factor: Product) -> Stacked[Item, Product]:
         back = self._back
@@ -87,15 +87,15 @@ class SlidingProduct(Generic[Item, Product]):
 
     def _turned(self, back: Stacked[Item, Product] | None) -> Stacked[Item, Product] | None:
         front: Stacked[Item, Product] | None = None
-        for cell in _walk(back):
-            product = cell.factor
+        for each in _walk(back):
+            product = each.factor
             if front is not None:
-                product = self._compose(cell.factor, front.product)
-            front = Stacked(cell.item, cell.factor, product, front)
+                product = self._compose(each.factor, front.product)
+            front = Stacked(each.item, each.factor, product, front)
         return front
 
 
-def _walk(cell: Stacked[Item, Product] | None) -> Iterator[Stacked[Item, Product]]:
-    while cell is not None:
-        yield cell
-        cell = cell.below
+def _walk(each: Stacked[Item, Product] | None) -> Iterator[Stacked[Item, Product]]:
+    while each is not None:
+        yield each
+        each = each.below

@@ -43,7 +43,7 @@ class _Place(NamedTuple):
 
     @property
     def is_installed(self) -> bool:
-        return "site-packages" in Path(self.file).parts
+        return not {"site-packages", "dist-packages"}.isdisjoint(Path(self.file).parts)
 
 
 def failure(error: BaseException) -> str:

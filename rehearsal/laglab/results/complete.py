@@ -112,7 +112,8 @@ def keep(scenario: Scenario, manner: Manner, ending: Ending, recorder: MemoryRec
     compared: dict[str, Errors | None] = {}
     failed: list[str] = []
     for name in names:
-        rows = list(until_it_fails(shadow_rows(scenario, name, session), failed.append))
+        with staying():
+            rows = list(until_it_fails(shadow_rows(scenario, name, session), failed.append))
         shadows[name] = collected(rows)
         compared[name] = shadow_error(rows, [trace], scenario.link.m)
     numbers = digest([trace], scenario.link.m)

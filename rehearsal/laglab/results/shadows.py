@@ -12,6 +12,7 @@ from laglab.results.columns import Lines, beside, csv_pieces, joined, rising
 from laglab.results.numbers import AXES, COVARIANCE, RmsError, deviation
 from laglab.results.summary import Errors
 from laglab.runs.station_side import shadow_config
+from laglab.runs.staying import staying
 from laglab.scenario import Scenario
 from laglab_control import PluginFailedError
 from laglab_gateway import Trace, csv_header, csv_lines
@@ -41,7 +42,9 @@ def shadow_rows(
 
     Raises: ScenarioError, when there is no such estimator.
     """
-    return shadow(shadow_config(scenario, name), session, scenario.link.playout.measurement)
+    with staying():
+        config = shadow_config(scenario, name)
+    return shadow(config, session, scenario.link.playout.measurement)
 
 
 def until_it_fails(rows: Iterable[ShadowRow], fail: Callable[[str], None]) -> Iterator[ShadowRow]:

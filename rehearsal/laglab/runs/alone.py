@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import replace
 
-from laglab.interrupts import WRITING, put_off
+from laglab.interrupts import FINISHING, put_off
 from laglab.runs.clock import LoopClock
 from laglab.runs.ending import Ending
 from laglab.runs.errors import CUT_SHORT, SIDE_ERRORS
@@ -73,7 +73,7 @@ def _heard_until_over(last: ExitStack) -> Iterator[None]:
         with short_pauses(), staying():
             yield
     finally:
-        last.enter_context(put_off(WRITING))
+        last.enter_context(put_off(FINISHING))
 
 
 def _answered(

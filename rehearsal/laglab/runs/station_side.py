@@ -53,9 +53,10 @@ def check_parts(scenario: Scenario) -> None:
 
     Raises PluginError or ConfigError.
     """
-    Controller(station_config(scenario)).start()
-    for name in scenario.estimator.compare:
-        Controller(shadow_config(scenario, name)).start()
+    with staying():
+        Controller(station_config(scenario)).start()
+        for name in scenario.estimator.compare:
+            Controller(shadow_config(scenario, name)).start()
 
 
 def shadow_config(scenario: Scenario, name: str) -> StationConfig:

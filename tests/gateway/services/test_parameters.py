@@ -1,4 +1,4 @@
-"""ParameterTable are listed, read and set."""
+"""Parameters are listed, read and set."""
 
 import math
 

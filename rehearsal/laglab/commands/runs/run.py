@@ -20,7 +20,7 @@ from laglab.commands.runs.live import LiveOption, OpenOption, shown_live
 from laglab.commands.runs.verdict import conclude
 from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, SEEING, require
-from laglab.interrupts import WRITING, put_off
+from laglab.interrupts import FINISHING, put_off
 from laglab.progress import progress_of
 from laglab.results.complete import Manner
 from laglab.results.place import place, withdrawn_unless_begun
@@ -73,7 +73,7 @@ def run(
             with progress_of(scenario) as told:
                 setup = replace(setup, live=page.line if page else None)
                 ending = run_into(directory, scenario, transport, told, setup)
-                last.enter_context(put_off(WRITING))
+                last.enter_context(put_off(FINISHING))
             code = conclude(scenario, manner, ending, directory, report, page)
     raise typer.Exit(code)
 

@@ -7,6 +7,7 @@ from laglab.runs.plant.brought import BroughtPlant, maker_of
 from laglab.runs.plant.hand import MovedByHand
 from laglab.runs.plant.opened import OpenPlant
 from laglab.runs.plant.shipped import FmuPlant, robot_parameters
+from laglab.runs.staying import staying
 from laglab.scenario import Scenario
 from laglab.scenario.tables.plant import SHIPPED
 from laglab_gateway import UnplaceableError
@@ -56,4 +57,5 @@ def check_plant(scenario: Scenario) -> None:
 
         check_foreign(scenario)
     elif scenario.plant.kind not in SHIPPED:
-        maker_of(scenario.plant.kind)
+        with staying():
+            maker_of(scenario.plant.kind)
