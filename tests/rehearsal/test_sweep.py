@@ -17,13 +17,12 @@ from typing import Any
 import pytest
 
 import laglab as lab
-from laglab.errors import RunError, StudyError
-from laglab.studies.sweep.cells.tasks import Task, done, grouped
+from laglab.errors import StudyError
+from laglab.studies.sweep.cells.tasks import grouped
 from laglab.studies.sweep.folder import ABANDONED, Folder
 from laglab.studies.sweep.loading import load_study, shipped_study_names
 from laglab.studies.sweep.work import work_left
-from laglab.studies.workers import Processes, as_done
-from laglab.version import code_version
+from laglab.studies.workers import as_done
 
 from .studying import (
     CELLS,
@@ -35,7 +34,6 @@ from .studying import (
     nothing_again,
     undisturbed,
     wait_for_cells,
-    write_deadly_study,
 )
 
 pytestmark = pytest.mark.timeout(180)
@@ -236,42 +234,6 @@ def test_a_folder_is_read_whatever_the_code_is_by_now(
     assert again.table.num_rows == 2
     assert again.missing == 0
     assert dict(again.study.grid) == {"noise": (False, True)}
-
-
-def test_a_job_that_kills_whoever_does_it_is_given_up() -> None:
-    with Processes(1) as processes:
-        deadly = processes.submit(os._exit, 7)
-        harmless = processes.submit(abs, -3)
-        with pytest.raises(RunError, match="exit code 7 and no word, three times at the same job"):
-            deadly.result(40)
-        assert harmless.result(20) == 3
-
-
-@pytest.mark.slow
-def test_a_run_that_kills_its_worker_costs_the_others_nothing(
-    laglab: Laglab, tmp_path: Path
-) -> None:
-    write_deadly_study(tmp_path)
-    swept = laglab("sweep", "mortal.toml", "--workers", "2", "--out", "out")
-    assert swept.returncode == 4
-    why = r"estimator\.options\.at = 10: the worker \d process ended with exit code 3 and no word"
-    assert re.search(why, swept.stderr), swept.stderr
-    assert "Traceback" not in swept.stderr
-    assert "and 1 more such" in swept.stderr
-    frame = lab.open_study(tmp_path / "out").to_pandas()
-    assert list(frame["estimator.options.at"]) == [500, 500]
-
-
-def test_what_nobody_foresaw_names_its_cell(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "small.toml").write_text(SMALL)
-    first, second, *_ = load_study(str(tmp_path / "small.toml")).cells()
-    monkeypatch.setattr("laglab.studies.sweep.cells.tasks.computed", lambda _: 1 // 0)
-    assert done(Task((first, second), code_version())) == [
-        f"{cell.place}: ZeroDivisionError('integer division or modulo by zero')"
-        for cell in (first, second)
-    ]
 
 
 class AtOnce:
