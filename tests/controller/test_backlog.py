@@ -105,7 +105,7 @@ def test_what_waited_of_a_robot_that_begins_again_is_not_the_new_ones(robot, sta
     answers = [heard(station, robot.says(k, k)) for k in range(125)]  # from 19 on it is met anew
     assert not any(isinstance(each, Estimate) for answer in answers[:110] for each in answer)
     assert any(isinstance(each, Estimate) for answer in answers[110:] for each in answer)
-    assert station.warnings == ("the robot has begun again",)
+    assert "the robot has begun again" in station.warnings
 
 
 def test_a_robot_s_first_ticks_are_all_answered(robot):
