@@ -17,6 +17,7 @@ from laglab_protocol import (
     Listener,
     Refusals,
     Settings,
+    Tick,
     differences,
     refuse_other_sample_time,
 )
@@ -193,6 +194,8 @@ class _Loop:
                 raise  # we have ended the run: nobody need come back
             self._reopen(error)
             return []
+        for frame in frames if self._station.tick is None else ():
+            self._notice_stranger(frame)
         frames = [frame for frame in frames if (frame.system, frame.component) == ROBOT]
         now, link = monotonic(), self._link
         if not frames:
@@ -206,6 +209,16 @@ class _Loop:
             self._heard_again = True
         self._heard = now
         return frames
+
+    def _notice_stranger(self, frame: Frame) -> None:
+        """What ticks while we wait for our robot may be it, under another name."""
+        if isinstance(frame.message, Tick) and (frame.system, frame.component) != ROBOT:
+            self._station.warn(
+                "stranger",
+                f"{self._link.name}: system {frame.system}, component {frame.component} ticks "
+                f"there: a robot must be system {ROBOT[0]}, component {ROBOT[1]}",
+            )
+            self._pass_warnings_on()
 
     def _accept_peer(self, now: float) -> None:
         """Who knocks is to hear our heartbeat at once, and has time to tell its settings."""

@@ -5,8 +5,19 @@ from dataclasses import replace
 from laglab_conformance.forge import Forged
 from laglab_conformance.items import Item, accepted, refused
 from laglab_conformance.session import DoesNotApplyError, Session
-from laglab_protocol import Refusal, Signer, layout_of, signing_time
+from laglab_protocol import (
+    Command,
+    End,
+    Estimate,
+    Measurement,
+    Refusal,
+    Signer,
+    Tick,
+    layout_of,
+    signing_time,
+)
 
+OF_THE_LOOP = (Command, End, Estimate, Measurement, Tick)
 UNKNOWN_ID = 59_999
 UNKNOWN_FLAG = 0x40
 GARBAGE = bytes(range(1, 60))
@@ -55,6 +66,16 @@ def _numbered(session: Session) -> str | None:
     counters = session.receiver.counters
     lost = counters.lost.get(session.peer, 0), counters.late.get(session.peer, 0)
     return f"{lost[0]} numbers left out, {lost[1]} out of order" if any(lost) else None
+
+
+def _itself(session: Session) -> str | None:
+    """Others who speak on the line are no fault; but nobody takes the loop's messages from them."""
+    for frame in session.heard:
+        speaker = frame.system, frame.component
+        if isinstance(frame.message, OF_THE_LOOP) and speaker != session.peer:
+            told = layout_of(frame.message).name
+            return f"{told} of system {speaker[0]}, component {speaker[1]}: not {session.peer}"
+    return None
 
 
 def _trimmed(session: Session) -> str | None:
@@ -125,6 +146,7 @@ RECEIVING: list[Item[Session]] = [
 
 SENDING: list[Item[Session]] = [
     Item("framing", "it sends nothing but frames", _only_frames),
+    Item("sender", "it speaks as who it is", _itself),
     Item("sequence", "it numbers its frames one by one", _numbered),
     Item("truncation", "it leaves trailing zeros at home", _trimmed),
 ]

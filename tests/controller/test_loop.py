@@ -191,7 +191,7 @@ def waiting():
 @pytest.mark.parametrize("speaker", [(7, 1), (1, 1)])
 def test_a_tick_of_somebody_who_never_answers_locks_no_station(waiting, speaker):
     """Not even in the robot's name: when the robot comes, it is met."""
-    url, outcome, _ = waiting
+    url, outcome, warnings = waiting
     with open_endpoint(url) as stranger:
         stranger.send(Sender(*speaker).frame(Tick(5000, 0)))
     with open_endpoint(url) as robot:
@@ -204,6 +204,8 @@ def test_a_tick_of_somebody_who_never_answers_locks_no_station(waiting, speaker)
             assert time.monotonic() < until
         drive(robot, Tick(1, 0), End(1, EndReason.COMPLETED))
     assert outcome() == [End(1, EndReason.COMPLETED)]
+    named = "system 7, component 1 ticks there: a robot must be system 1, component 1"
+    assert sum(named in text for text in warnings) == (speaker == (7, 1))
 
 
 def test_a_stray_tick_takes_no_station_from_its_robot(waiting):

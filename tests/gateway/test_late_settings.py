@@ -83,6 +83,15 @@ def test_what_follows_a_heartbeat_is_waited_for_on_a_stream() -> None:
         warnings_of(told_later(Settings(0.02)))
 
 
+def test_a_station_that_tells_ever_other_things_is_named_once() -> None:
+    for link in (Told, Datagrams):
+        said = warnings_of(
+            link(CALL, *(SENDER.frame(Settings(0.01, track=k)) for k in range(1, 99)))
+        )
+        assert said[-1] == "the controller goes on changing its settings"
+        assert len(said) <= 7, "else it fills the screen"
+
+
 def test_a_station_that_never_tells_is_noted() -> None:
     (said,) = warnings_of(Datagrams(CALL))
     assert said == "the controller does not tell its settings: nothing to compare with ours"

@@ -44,6 +44,9 @@ KNOCK_PERIOD = 0.5
 SETTINGS_WITHIN = 0.3
 """[s] Of the heartbeat that they follow on a stream, however slow."""
 
+MOST_COMPARISONS = 5
+"""A few stations may come in a run; whoever says ever other things is named so, once."""
+
 TAKEN_OVER = "another station has taken over"
 
 
@@ -70,6 +73,7 @@ class Conversation:
         self._watch = around.watch or Watch(gateway.services, [])
         self._heard, self._heard_tick = self.now(), 0
         self._settings: Settings | None = None
+        self._comparisons = 0
         self._told: set[str] = set()
         self._askers = Askers()
         self._begun = False
@@ -187,6 +191,10 @@ class Conversation:
     def _compare_settings(self) -> None:
         self._settings = self._gateway.station_settings
         assert self._settings is not None, "only a message changes it"
+        self._comparisons += 1
+        if self._begun and self._comparisons > MOST_COMPARISONS:
+            self._warn("the controller goes on changing its settings")
+            return
         try:
             refuse_other_sample_time(self._gateway.settings, self._settings)
         except SettingsError as error:

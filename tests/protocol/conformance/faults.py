@@ -15,6 +15,7 @@ BOTH = {
     "obeys anybody": "another system is not obeyed",
     "obeys any component": "another component of the system is not obeyed",
     "sends stray bytes": "it sends nothing but frames",
+    "speaks as another": "it speaks as who it is",
     "skips numbers": "it numbers its frames one by one",
     "sends zeros": "it leaves trailing zeros at home",
     "keeps its settings to itself": "it tells its settings",

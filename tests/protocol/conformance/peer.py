@@ -87,6 +87,8 @@ class Peer(threading.Thread):
         raw = self.codec.sender.frame(message)
         if self.fault == "skips numbers":
             self.codec.sender.frame(message)
+        if self.fault == "speaks as another":
+            return Forged.of(message, 7, self.component, raw[4], None).raw
         if self.fault == "sends zeros":
             forged = Forged.of(message, self.system, self.component, raw[4], None)
             return forged.untrimmed(message).raw
