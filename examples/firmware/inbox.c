@@ -4,15 +4,19 @@
 #include <stddef.h>
 #include <string.h>
 
+/* Ticks: what is stamped further ahead is no answer to anything that was said here. */
+#define FURTHEST_AHEAD 256u
+
 void inbox_clear(Inbox *inbox) {
     for (size_t i = 0; i < INBOX_SLOTS; i++) {
         inbox->slots[i] = (Slot){.planned.command.stamp = NO_COMMAND};
     }
 }
 
-/* NULL where something newer is in its place. */
-static Slot *slot_of(Inbox *inbox, int32_t stamp) {
-    if (stamp < 0) {
+/* NULL where something newer is in its place, and for what answers a tick that is far from come: it would be the
+ * newest for long, and keep all others out. */
+static Slot *slot_of(Inbox *inbox, uint32_t tick, int32_t stamp) {
+    if (stamp < 0 || (uint32_t)stamp > tick + FURTHEST_AHEAD) {
         return NULL;
     }
     Slot *slot = &inbox->slots[stamp % INBOX_SLOTS];
@@ -46,7 +50,7 @@ static void drop_if_late(const Inbox *inbox, Slot *slot, uint32_t tick) {
 
 void inbox_take_command(Inbox *inbox, uint32_t tick, Command command, uint16_t length) {
     const bool sound = length <= PLAN_LONGEST && isfinite(command.v) && isfinite(command.omega);
-    Slot *slot = sound ? slot_of(inbox, command.stamp) : NULL;
+    Slot *slot = sound ? slot_of(inbox, tick, command.stamp) : NULL;
     if (!slot || slot->came) {
         return;
     }
@@ -65,7 +69,7 @@ static bool is_sound(const Piece *piece) {
 }
 
 void inbox_take_piece(Inbox *inbox, uint32_t tick, const Piece *piece) {
-    Slot *slot = is_sound(piece) ? slot_of(inbox, piece->stamp) : NULL;
+    Slot *slot = is_sound(piece) ? slot_of(inbox, tick, piece->stamp) : NULL;
     if (!slot) {
         return;
     }

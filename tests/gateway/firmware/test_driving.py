@@ -113,6 +113,12 @@ def test_what_is_not_finite_keeps_no_place_from_others(line: Line) -> None:
     assert line.samples_from(6, 1)[0].speeds == (0.25, 0.0)
 
 
+def test_what_answers_a_tick_that_is_far_from_come_keeps_no_place_from_others(line: Line) -> None:
+    begin(line)
+    line.say(command(2**31 - 1, 1.0), command(6, 0.25))
+    assert line.samples_from(6, 1)[0].speeds == (0.25, 0.0)
+
+
 def test_nobody_but_the_station_commands_it(line: Line) -> None:
     begin(line)
     stranger = line._replace(sender=Sender(7, STATION_COMPONENT))
