@@ -266,6 +266,7 @@ class Filter(Ekf):
 """
 
 
+@pytest.mark.slow
 def test_a_station_whose_run_is_over_writes_its_tables_first(
     start: Start, listening_port: Callable[["subprocess.Popen[str]"], str], tmp_path: Path
 ) -> None:

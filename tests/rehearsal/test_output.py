@@ -109,6 +109,7 @@ def test_where_nothing_can_be_said_the_code_says_it(shell: Callable[..., Ended])
     assert shell(">/dev/full 2>/dev/full", *laglab, "estimators").returncode == 4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "line",
     [

@@ -141,6 +141,7 @@ def test_of_a_run_that_was_killed_the_log_is_named(run, tmp_path, refused):
     assert f"can be replayed: laglab replay {killed / 'robot.tlog'}" in line
 
 
+@pytest.mark.slow
 def test_a_replay_is_not_mixed_with_another_runs_results(replay, refused, run, tmp_path):
     ekf = ("--estimator", "ekf", "--report", "--out")
     other = shutil.copytree(run, tmp_path / "other")

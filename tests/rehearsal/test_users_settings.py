@@ -46,6 +46,7 @@ def study() -> StudyRuns:
     return on_grid("maps", "fig6", grid, seeds=1, overrides={"duration": 0.2})
 
 
+@pytest.mark.slow
 def test_a_command_draws_as_ever(
     tmp_path: Path, laglab: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -69,6 +70,7 @@ def test_what_a_run_and_a_study_show_is_the_same(short: laglab.Run, study: Study
         assert pictures() == usual
 
 
+@pytest.mark.slow
 def test_what_is_saved_is_the_same(short: laglab.Run, study: StudyRuns, tmp_path: Path) -> None:
     def pictures() -> list[bytes]:
         save(short.figure("one"), tmp_path / "run.png")

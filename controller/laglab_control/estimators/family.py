@@ -67,7 +67,6 @@ ESTIMATORS: Mapping[str, EstimatorKind] = {
     "tue-predictor": EstimatorKind(
         "a copy of the robot, pulled to where the robot was seen to have been",
         lambda model: Rewinding(TuePredictor(model)),
-        admits={"NEES": "it claims nothing of its own"},
     ),
     "delayed-ekf": EstimatorKind(
         "the optimum: an EKF at the measurement's tick, carried forward over the known inputs",
