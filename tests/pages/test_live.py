@@ -116,6 +116,19 @@ def test_it_follows_the_run_and_stops_the_robot(
     assert freed(run.port)
 
 
+@pytest.mark.slow
+def test_without_a_clock_it_follows_the_run_too(live: Callable[..., Live], tab: Tab) -> None:
+    run = live("run", "lab", "--duration", "36000", "--live")
+    tab.open(run.address)
+    tab.wait("document.getElementById('state').textContent.startsWith('running: ')")
+    tab.wait("source('ticks', 0).data.time.length > 50")
+    assert "ticks began late by" not in tab.text("body")
+    tab.click("#end")
+    assert run.ended() == 130
+    tab.wait("over")
+    assert tab.errors == []
+
+
 def test_it_ends_the_run(live: Callable[..., Live], tab: Tab, tmp_path: Path) -> None:
     run = live(*REALTIME, "--duration", "60")
     tab.open(run.address, wide=400)

@@ -35,6 +35,7 @@ function noteDue(ticks, commands) {
 function take(tables, whole) {
   for (const [name, cells] of Object.entries(tables)) {
     const told = numbers(cells), held = source(name, 0);
+    if (!held) continue;  // no plot of this page shows it
     if (whole) held.data = name === "marks" ? after(legend ??= held.data, told) : told;
     else if (Object.values(told)[0].length) held.stream(told, MOST_ROWS);
   }
