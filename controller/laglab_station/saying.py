@@ -16,8 +16,8 @@ def said(
     tick: int,
     control: Control,
     robot: tuple[int, int],
-    asks: Sequence[Message] = (),
-    estimates: bool = True,
+    asks: Sequence[Message],
+    estimates: bool,
 ) -> list[Message]:
     """The answer to this robot's tick; the command closes it, and says how many went before.
     `estimates`: whether there is an estimate to report."""

@@ -57,6 +57,12 @@ def ended(capsys: Capture, *arguments: str) -> tuple[int, str]:
     return code, capsys.readouterr().err
 
 
+def ran(*command: object) -> "subprocess.CompletedProcess[str]":
+    return subprocess.run(
+        list(map(str, command)), capture_output=True, text=True, timeout=60, check=False
+    )
+
+
 def a_line(error: str, *words: str) -> bool:
     return error.count("\n") == 1 and all(word in error for word in words)
 
@@ -66,7 +72,7 @@ def test_the_users_modules_are_not_taken_for_the_librarys(here: Path, name: str)
     """Theirs are looked for in the current directory, but last."""
     (here / f"{name}.py").write_text("raise RuntimeError('mine')")
     command = Path(sys.executable).with_name("laglab")
-    done = subprocess.run([command, *RUN], capture_output=True, text=True, timeout=60, check=False)
+    done = ran(command, *RUN)
     assert done.stderr.count("\n") <= 1, done.stderr
     assert "results in" in done.stdout
 
@@ -222,9 +228,7 @@ def test_what_finds_no_room_is_named(
 ) -> None:
     shutil.copytree(kept, here / "run")
     limited = f"ulimit -f {room}; {sys.executable} -m laglab {command}"
-    done = subprocess.run(
-        ["bash", "-c", limited], capture_output=True, text=True, timeout=60, check=False
-    )
+    done = ran("bash", "-c", limited)
     assert done.returncode == code, done.stderr
     assert a_line(done.stderr, said, "File too large")
     assert not {"my-law", "a.gif"} & {path.name for path in here.iterdir()}
@@ -234,13 +238,7 @@ def test_what_finds_no_room_is_named(
 def test_a_current_directory_that_is_gone_is_told(here: Path) -> None:
     (here / "gone").mkdir()
     command = f"cd gone && rmdir ../gone && {sys.executable} -m laglab {' '.join(RUN)}"
-    done = subprocess.run(
-        ["sh", "-c", f"{command} --out {here}/run"],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    done = ran("sh", "-c", f"{command} --out {here}/run")
     assert done.returncode == 2
     assert a_line(done.stderr, "laglab: the current directory is gone: go to one that is there")
 
@@ -250,12 +248,6 @@ def test_a_parser_for_which_there_is_no_room_is_told(here: Path) -> None:
     (here / "parser").mkdir()
     (here / "parser" / "laglab.py").symlink_to("/dev/full")
     generate = ("protocol", "generate", "--lang", "Python3", "parser")
-    done = subprocess.run(
-        [sys.executable, "-m", "laglab", *generate],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    done = ran(sys.executable, "-m", "laglab", *generate)
     assert done.returncode == 4
     assert a_line(done.stderr, "parser/laglab.py: No space left on device")

@@ -63,8 +63,9 @@ def input_elements(file: FmuFile, names: Mapping[str, str]) -> list[Element]:
 
 def output_elements(file: FmuFile, names: Mapping[str, str]) -> list[Element]:
     """What the FMU can be asked. Raises WiringError, naming the key."""
-    for sensed in (False, True):  # a pose that is measured exactly may stand for both
-        _refuse_twice("outputs", {k: v for k, v in names.items() if k.endswith("_meas") == sensed})
+    measured = {ours: theirs for ours, theirs in names.items() if ours.endswith("_meas")}
+    _refuse_twice("outputs", measured)  # by itself: a pose may be measured exactly
+    _refuse_twice("outputs", {ours: names[ours] for ours in names if ours not in measured})
     found = [_found(file, f"outputs.{ours}", theirs) for ours, theirs in names.items()]
     for ours, element in zip(names, found, strict=True):
         kind = element.variable.type

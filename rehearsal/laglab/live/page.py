@@ -17,13 +17,12 @@ FOR_EVER = 1e9
 
 def page_html(scenario: Scenario, order: LiveOrder, controls: bool) -> str:
     """The whole page, of the scenario as ordered; with the buttons for who may press them."""
-    by_our_clock = scenario.pace == "realtime" and not order.measured
     panel = Panel(
         name=scenario.name,
         scenario=scenario,
         tables=tables_in(Rows(), scenario),
         measured=order.measured,
-        timed=by_our_clock,
+        timed=scenario.pace == "realtime" and not order.measured,
         origin=order.origin,
         quiet=announced(scenario),
     )

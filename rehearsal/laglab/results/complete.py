@@ -28,7 +28,6 @@ from laglab.results.shadows import (
 from laglab.results.station import decoded
 from laglab.results.summary import Errors, Final, Following, Side, Summary, write_summary
 from laglab.runs.ending import Ending
-from laglab.runs.staying import staying
 from laglab.scenario import Scenario
 from laglab.version import laglab_version, versions
 from laglab_gateway import (
@@ -79,9 +78,9 @@ def complete(
             withdraw(directory)
         raise why from None
     failed: list[str] = []
-    names = scenario.estimator.compare
-    with staying():
-        compared = {name: _shadowed(scenario, name, directory, failed) for name in names}
+    compared = {
+        name: _shadowed(scenario, name, directory, failed) for name in scenario.estimator.compare
+    }
     ending = ending.warned(failed)
     following = followed(trace_pieces(directory / TRACE_FILE), scenario.target, numbers.rows)
     summary = summarise(scenario, manner, ending, numbers, compared, following)
@@ -112,8 +111,7 @@ def keep(scenario: Scenario, manner: Manner, ending: Ending, recorder: MemoryRec
     compared: dict[str, Errors | None] = {}
     failed: list[str] = []
     for name in names:
-        with staying():
-            rows = list(until_it_fails(shadow_rows(scenario, name, session), failed.append))
+        rows = list(until_it_fails(shadow_rows(scenario, name, session), failed.append))
         shadows[name] = collected(rows)
         compared[name] = shadow_error(rows, [trace], scenario.link.m)
     numbers = digest([trace], scenario.link.m)
@@ -143,10 +141,9 @@ def nothing_recorded(ending: Ending, otherwise: str) -> BaseException:
 
 
 def _shadowed(scenario: Scenario, name: str, directory: Path, failed: list[str]) -> Errors | None:
-    directory = directory.absolute()  # wherever the filter leads us meanwhile
-    rows = until_it_fails(
-        shadow_rows(scenario, name, read_session(directory / TLOG_FILE)), failed.append
-    )
+    tlog = (directory / TLOG_FILE).absolute()  # opened when the filter is under way
+    session = read_session(tlog)
+    rows = until_it_fails(shadow_rows(scenario, name, session), failed.append)
     written = kept_rows(rows, shadow_file(directory, name))
     pieces = trace_pieces(directory / TRACE_FILE)
     return shadow_error(written, pieces, scenario.link.m)

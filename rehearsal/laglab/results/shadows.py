@@ -44,7 +44,17 @@ def shadow_rows(
     """
     with staying():
         config = shadow_config(scenario, name)
-    return shadow(config, session, scenario.link.playout.measurement)
+    return _at_home(shadow(config, session, scenario.link.playout.measurement))
+
+
+def _at_home(rows: Iterator[ShadowRow]) -> Iterator[ShadowRow]:
+    """The same, each taken where the user stands."""
+    while True:
+        with staying():
+            row = next(rows, None)
+        if row is None:
+            return
+        yield row
 
 
 def until_it_fails(rows: Iterable[ShadowRow], fail: Callable[[str], None]) -> Iterator[ShadowRow]:

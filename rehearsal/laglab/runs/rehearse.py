@@ -73,8 +73,7 @@ def rehearse_inline(
             Codec(STATION_SYSTEM, STATION_COMPONENT, setup.key) as codec,
             fed(recorder, setup.live, robot.controls) as told,
         ):
-            with staying():
-                station = make_station(scenario, codec.sender, controller)
+            station = make_station(scenario, codec.sender, controller)
             link = InlineLink(station, codec.receiver)
             listener = Listener(link, robot.codec.receiver)
             around = Surroundings(listener, told, progress=clock, warn=warnings.append)

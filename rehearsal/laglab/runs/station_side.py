@@ -110,14 +110,15 @@ def make_station(
     controller: Callable[[StationConfig], Controller] = Controller,
 ) -> Station:
     """The station's core, whose frames `sender` makes."""
-    return Station(
-        station_config(scenario),
-        controller,
-        clock=time.monotonic_ns,
-        sender=sender,
-        settings=station_settings(scenario),
-        playout=scenario.link.playout.measurement,
-    )
+    with staying():
+        return Station(
+            station_config(scenario),
+            controller,
+            clock=time.monotonic_ns,
+            sender=sender,
+            settings=station_settings(scenario),
+            playout=scenario.link.playout.measurement,
+        )
 
 
 class OpenStation(NamedTuple):
@@ -131,6 +132,4 @@ class OpenStation(NamedTuple):
 def open_station(scenario: Scenario, key: Path | None = None) -> Iterator[OpenStation]:
     """The remote station's side, its frames signed with a key."""
     with Codec(STATION_SYSTEM, STATION_COMPONENT, key) as codec:
-        with staying():
-            station = make_station(scenario, codec.sender)
-        yield OpenStation(station, codec.receiver)
+        yield OpenStation(make_station(scenario, codec.sender), codec.receiver)

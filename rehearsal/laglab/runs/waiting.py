@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from threading import Thread
 
-from laglab.runs.staying import staying
 from laglab_control import PluginError
 
 START = 30.0
@@ -19,8 +18,7 @@ def in_time(name: str, work: Callable[[], object], seconds: float = START) -> No
 
     def done() -> None:
         try:
-            with staying():
-                work()
+            work()
         except BaseException as error:
             raised.append(error)
 

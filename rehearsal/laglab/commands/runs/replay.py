@@ -13,7 +13,6 @@ from laglab.results.place import REPORT_FILE, replay_place
 from laglab.results.replaying import draw_replays, replayed_run, replays_table
 from laglab.results.run import Run, kept_scenario
 from laglab.results.shadows import collected, file_name, kept_rows, shadow_rows
-from laglab.runs.staying import staying
 from laglab.scenario import load
 from laglab.scenario.tables.estimator import COMPARABLE
 from laglab.tables import terminal
@@ -70,12 +69,11 @@ def replay(
     trace_file = tlog.parent / TRACE_FILE
     trace = read_trace(trace_file) if trace_file.exists() else None
     asked = {name: shadow_rows(told, name, session) for name in estimators}
-    directory = replay_place(out, tlog).absolute()  # wherever a filter leads us meanwhile
-    with staying():
-        replays = {
-            name: collected(kept_rows(rows, directory / f"{file_name(name)}.csv"))
-            for name, rows in asked.items()
-        }
+    directory = replay_place(out, tlog)
+    replays = {
+        name: collected(kept_rows(rows, directory / f"{file_name(name)}.csv"))
+        for name, rows in asked.items()
+    }
     terminal().print(replays_table(replays, trace))
     save(draw_replays(told, session, replays, trace, width), directory / "replay.png")
     if report:
