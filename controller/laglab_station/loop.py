@@ -17,9 +17,9 @@ from laglab_protocol import (
     Listener,
     Refusals,
     Settings,
-    Tick,
     differences,
     refuse_other_sample_time,
+    stranger_as_robot,
 )
 from laglab_station.errors import RobotSilentError
 from laglab_station.station import Station
@@ -194,8 +194,8 @@ class _Loop:
                 raise  # we have ended the run: nobody need come back
             self._reopen(error)
             return []
-        for frame in frames if self._station.tick is None else ():
-            self._notice_stranger(frame)
+        if frames and self._station.tick is None:
+            self._notice_stranger(frames)
         frames = [frame for frame in frames if (frame.system, frame.component) == ROBOT]
         now, link = monotonic(), self._link
         if not frames:
@@ -210,14 +210,10 @@ class _Loop:
         self._heard = now
         return frames
 
-    def _notice_stranger(self, frame: Frame) -> None:
+    def _notice_stranger(self, frames: Sequence[Frame]) -> None:
         """What ticks while we wait for our robot may be it, under another name."""
-        if isinstance(frame.message, Tick) and (frame.system, frame.component) != ROBOT:
-            self._station.warn(
-                "stranger",
-                f"{self._link.name}: system {frame.system}, component {frame.component} ticks "
-                f"there: a robot must be system {ROBOT[0]}, component {ROBOT[1]}",
-            )
+        if said := stranger_as_robot(frames, self._link.name):
+            self._station.warn("stranger", said)
             self._pass_warnings_on()
 
     def _accept_peer(self, now: float) -> None:

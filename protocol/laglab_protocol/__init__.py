@@ -128,6 +128,7 @@ from laglab_protocol.restart import Restart
 from laglab_protocol.settings import TELLS_WITHIN, Parties, differences, refuse_other_sample_time
 from laglab_protocol.signing.keys import Codec, make_key, read_key, refuse_open_door
 from laglab_protocol.signing.signature import EVERY_MESSAGE, Signer, Verifier, signing_time
+from laglab_protocol.strangers import stranger_as_robot, stranger_as_station
 from laglab_protocol.timing import Durations, Quantiles
 from laglab_protocol.tlog import read_tlog, tlog_record
 
@@ -269,5 +270,7 @@ __all__ = [
     "refuse_other_sample_time",
     "require_terminals",
     "signing_time",
+    "stranger_as_robot",
+    "stranger_as_station",
     "tlog_record",
 ]

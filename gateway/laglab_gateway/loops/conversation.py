@@ -3,16 +3,13 @@
 import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from typing import NamedTuple
 
 from laglab_gateway.errors import StationSilentError, TraceError
-from laglab_gateway.link.log import LinkRow
 from laglab_gateway.loops.datagrams import datagrams
 from laglab_gateway.loops.surroundings import READ_ON, Surroundings
+from laglab_gateway.loops.unwritten import Unwritten
 from laglab_gateway.loops.watch import Watch
 from laglab_gateway.record.recorder import Recorder
-from laglab_gateway.record.rows import ArrivalRow, ClaimRow
-from laglab_gateway.record.trace import TraceRow
 from laglab_gateway.services import Askers, heartbeat
 from laglab_gateway.side import RobotSide
 from laglab_gateway.speakers import from_station
@@ -28,6 +25,7 @@ from laglab_protocol import (
     Statustext,
     differences,
     refuse_other_sample_time,
+    stranger_as_station,
 )
 
 TIMESYNC_TICKS = 10
@@ -50,15 +48,6 @@ MOST_COMPARISONS = 5
 TAKEN_OVER = "another station has taken over"
 
 
-class _Closed(NamedTuple):
-    """What there is to record of a tick."""
-
-    row: TraceRow
-    link: list[LinkRow]
-    arrivals: list[ArrivalRow]
-    claims: list[ClaimRow]
-
-
 class Conversation:
     """Sends, listens, records, and knows since when the station is silent."""
 
@@ -77,7 +66,7 @@ class Conversation:
         self._told: set[str] = set()
         self._askers = Askers()
         self._begun = False
-        self._closed: list[_Closed] = []
+        self._unwritten = Unwritten()
         self._knocked = -math.inf
         self._refusals = Refusals(self.now())
 
@@ -152,6 +141,7 @@ class Conversation:
         frames = self._listener.listen(timeout)
         if frames and not self._gateway.connected:  # an END is of a past run, and no station's call
             frames = [frame for frame in frames if not isinstance(frame.message, End)]
+            self._notice_stranger(frames)
         if frames and any(from_station(frame) for frame in frames):
             frames = self._of_the_station_in_force(frames)
         if frames:
@@ -162,6 +152,13 @@ class Conversation:
                 self._reply(replies)
         if not self._gateway.answered:
             self._look_around()
+
+    def _notice_stranger(self, frames: Sequence[Frame]) -> None:
+        """What speaks so while we wait for our station may be it, under another name."""
+        said = stranger_as_station(frames, self._link.name)
+        if said and "stranger" not in self._told:
+            self._told.add("stranger")
+            self._around.warn(said)
 
     def _of_the_station_in_force(self, frames: list[Frame]) -> list[Frame]:
         """All of them; while another station is in force, only those that are no station's."""
@@ -260,24 +257,10 @@ class Conversation:
 
     def finish_tick(self) -> None:
         """Close the tick; it is recorded when there is time."""
-        gateway, notes = self._gateway, self._gateway.notes
-        row = gateway.close_tick()
-        self._closed.append(
-            _Closed(row, gateway.take_link_rows(), notes.take_arrivals(), notes.take_claims())
-        )
+        self._unwritten.close_tick(self._gateway)
 
     def _write_down(self) -> None:
-        """Hand the recorder the ticks that were closed since the last time."""
-        closed, self._closed = self._closed, []
-        for tick in closed:
-            self._recorder.row(tick.row)
-            if tick.link:
-                self._recorder.link(tick.link)
-            if tick.arrivals:
-                self._recorder.arrivals(tick.arrivals)
-            if tick.claims:
-                self._recorder.claims(tick.claims)
-            self._around.progress(tick.row.tick)
+        self._unwritten.write_down(self._recorder, self._around.progress)
 
     def _say_goodbye(self) -> None:
         """Tell the station, and give it a few chances to say that it heard; as long as it answers

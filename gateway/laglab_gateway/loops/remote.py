@@ -22,6 +22,7 @@ from laglab_protocol import (
     Settings,
     differences,
     refuse_other_sample_time,
+    stranger_as_robot,
 )
 
 GREETED_AGAIN = 0.3
@@ -38,6 +39,8 @@ class RobotLine:
         self._listener = listener
         self._refusals = Refusals(monotonic(), "--plant-key")
         self._heard = self._greeted = monotonic()
+        self._stranger: str | None = None
+        """Who ticks and is not our robot, until that is told; then empty."""
         self._compared: Settings | None = None
         self._asked: float | None = None
         """When its settings were missed for the first time."""
@@ -80,7 +83,10 @@ class RobotLine:
                 yield
 
     def _listen(self, timeout: float) -> list[Frame]:
-        frames = [frame for frame in self._listener.listen(timeout) if from_robot(frame)]
+        heard = self._listener.listen(timeout)
+        if self._stranger is None and not self._relay.under_way:
+            self._stranger = stranger_as_robot(heard, self._link.name) or None
+        frames = [frame for frame in heard if from_robot(frame)]
         if frames:
             self._link.accept_peer()
         return frames
@@ -96,9 +102,12 @@ class RobotLine:
             since = self._relay.tick if self._relay.under_way else None
             raise PlantSilentError(self._link.name, since, monotonic() - self._heard)
 
-    def refusals(self) -> Iterator[str]:
-        """Now and then: why frames of the robot are not taken, and how to mend that."""
-        return self._refusals.news([self._listener], monotonic())
+    def not_taken(self) -> Iterator[str]:
+        """Now and then: whose frames are not taken, or why not, and how to mend that."""
+        if self._stranger:  # it may be our robot, under another name
+            yield self._stranger
+            self._stranger = ""
+        yield from self._refusals.news([self._listener], monotonic())
 
     def compare_settings(self) -> str:
         """What the robot was told differently, as soon as it tells; empty when all is well.
@@ -174,7 +183,7 @@ def serve_remote(relay: Relay, robot: Listener, around: Surroundings) -> Served:
                 _relay_ticks(relay, line, conversation, around)
             line.greet_if_silent()
             line.forward()
-            for said in line.refusals():
+            for said in line.not_taken():
                 around.warn(said)
             for _ in range(READ_ON):
                 if relay.outcome is None and line.seems_silent:
