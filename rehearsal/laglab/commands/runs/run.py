@@ -1,6 +1,5 @@
 """`laglab run`."""
 
-from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
 from typing import Annotated
@@ -16,14 +15,13 @@ from laglab.commands.options import (
     PlantOption,
     ReportOption,
 )
-from laglab.commands.runs.live import LiveOption, OpenOption, shown_live
-from laglab.commands.runs.verdict import conclude
+from laglab.commands.runs.leaving import Wishes, leaving
+from laglab.commands.runs.live import LiveOption, OpenOption
 from laglab.errors import ScenarioError
-from laglab.extras import REHEARSING, SEEING, require
+from laglab.extras import REHEARSING, require
 from laglab.interrupts import FINISHING, put_off
 from laglab.progress import progress_of
 from laglab.results.complete import Manner
-from laglab.results.place import place, withdrawn_unless_begun
 from laglab.runs.plant import check_plant
 from laglab.runs.rehearse import Transport
 from laglab.runs.robot_side import Setup, wrapped_replay
@@ -55,8 +53,8 @@ def run(
     Two processes, or one; the records, and the verdict.
     """
     require(REHEARSING)
-    if report:
-        require(SEEING)
+    wishes = Wishes(out, force, report, live, open_)
+    wishes.check()
     if plant is not None and transport == "inline":
         raise ScenarioError("--plant: a real robot does not wait: take --transport udp or serial")
     setup = Setup(plant, key, plant_key=plant_key)
@@ -67,14 +65,12 @@ def run(
     if said := wrapped_replay(scenario):
         say(said)
     manner = Manner("both", transport, plant or scenario.plant.called)
-    with shown_live(scenario, manner, live, open_) as page:
-        directory = place(scenario, out, force)
-        with withdrawn_unless_begun(directory), ExitStack() as last:
-            with progress_of(scenario) as told:
-                setup = replace(setup, live=page.line if page else None)
-                ending = run_into(directory, scenario, transport, told, setup)
-                last.enter_context(put_off(FINISHING))
-            code = conclude(scenario, manner, ending, directory, report, page)
+    with leaving(scenario, manner, wishes) as left:
+        with progress_of(scenario) as told:
+            setup = replace(setup, live=left.line)
+            ending = run_into(left.directory, scenario, transport, told, setup)
+            left.last.enter_context(put_off(FINISHING))
+        code = left.conclude(ending)
     raise typer.Exit(code)
 
 

@@ -15,19 +15,19 @@ from laglab.commands.options import (
     PlantOption,
     ReportOption,
 )
-from laglab.commands.runs.live import LiveOption, OpenOption, shown_live
-from laglab.commands.runs.verdict import conclude
-from laglab.extras import SEEING, STEPPING, require
+from laglab.commands.runs.leaving import Leaving, Wishes, leaving
+from laglab.commands.runs.live import LiveOption, OpenOption
+from laglab.extras import STEPPING, require
 from laglab.live import fed, watched_station
 from laglab.progress import progress_of
 from laglab.results.complete import Manner
-from laglab.results.place import place, withdrawn_unless_begun
 from laglab.results.station import StationGlance, StationRecord
 from laglab.runs.alone import answer_alone, serve_alone
 from laglab.runs.clock import LoopClock
+from laglab.runs.ending import Ending
 from laglab.runs.glance import watched
-from laglab.runs.robot_side import Setup, open_robot, wrapped_replay
-from laglab.runs.station_side import open_station
+from laglab.runs.robot_side import OpenRobot, Setup, open_robot, wrapped_replay
+from laglab.runs.station_side import OpenStation, open_station
 from laglab.scenario import Scenario
 from laglab.tables import say
 from laglab_gateway import FileRecorder, Patience, Surroundings
@@ -89,10 +89,9 @@ def gateway(
     """Be the robot's side of SCENARIO, for a controller elsewhere."""
     if plant is None:
         require(STEPPING)
-    if report:
-        require(SEEING)
+    wishes = Wishes(out, force, report, live, open_)
+    wishes.check()
     with (
-        ExitStack() as stack,
         open_robot(scenario, Setup(plant, key, not disarmed, unsigned, plant_key)) as robot,
         open_endpoint(endpoint) as link,
         _opened(watch or []) as watchers,
@@ -100,34 +99,44 @@ def gateway(
         for each in (link, *watchers):
             refuse_open_door(each, key, unsigned)
         manner = Manner("robot", link.name, plant or scenario.plant.called)
-        page = stack.enter_context(shown_live(scenario, manner, live, open_))
-        directory = place(scenario, out, force)
-        stack.enter_context(withdrawn_unless_begun(directory))
-        last = stack.enter_context(ExitStack())
-        if said := wrapped_replay(scenario):
-            say(said)
-        _say_whom_we_wait_for("the controller", link)
-        for each in watchers:
-            say(f"a ground station may look on at {each.name}")
-        if disarmed:
-            say("the robot is disarmed: it stands still until a ground station arms it")
-        line = page.line if page else None
-        with (
-            progress_of(scenario) as told,
-            fed(FileRecorder(directory), line, robot.controls) as files,
-        ):
-            recorder, now = watched(files, scenario)
-            around = Surroundings(
-                Listener(link, robot.codec.receiver),
-                recorder,
-                Patience(silence=scenario.silence_timeout),
-                robot.watch(watchers),
-                lambda tick: told(tick, now()),
-                _warn,
-            )
-            ending = serve_alone(robot, around, last)
-        code = conclude(scenario, manner, ending, directory, report, page)
+        with leaving(scenario, manner, wishes) as left:
+            _introduce(scenario, link, watchers, disarmed)
+            code = left.conclude(_served(robot, link, watchers, left))
     raise typer.Exit(code)
+
+
+def _introduce(
+    scenario: Scenario, link: Endpoint, watchers: Sequence[Endpoint], disarmed: bool
+) -> None:
+    """Say where the robot is, and what whoever starts it may not expect."""
+    if said := wrapped_replay(scenario):
+        say(said)
+    _say_whom_we_wait_for("the controller", link)
+    for each in watchers:
+        say(f"a ground station may look on at {each.name}")
+    if disarmed:
+        say("the robot is disarmed: it stands still until a ground station arms it")
+
+
+def _served(
+    robot: OpenRobot, link: Endpoint, watchers: Sequence[Endpoint], left: Leaving
+) -> Ending:
+    """The run, to its end."""
+    scenario = left.scenario
+    with (
+        progress_of(scenario) as told,
+        fed(FileRecorder(left.directory), left.line, robot.controls) as files,
+    ):
+        recorder, now = watched(files, scenario)
+        around = Surroundings(
+            Listener(link, robot.codec.receiver),
+            recorder,
+            Patience(silence=scenario.silence_timeout),
+            robot.watch(watchers),
+            lambda tick: told(tick, now()),
+            _warn,
+        )
+        return serve_alone(robot, around, left.last)
 
 
 @contextmanager
@@ -148,24 +157,23 @@ def controller(
     open_: OpenOption = False,
 ) -> None:
     """Be the remote station of SCENARIO, for a robot elsewhere."""
-    if report:
-        require(SEEING)
-    with open_endpoint(endpoint) as link, open_station(scenario, key) as (station, receiver):
+    wishes = Wishes(out, force, report, live, open_)
+    wishes.check()
+    with open_endpoint(endpoint) as link, open_station(scenario, key) as opened:
         manner = Manner("station", link.name, "unknown")
-        with ExitStack() as stack:
-            page = stack.enter_context(shown_live(scenario, manner, live, open_))
-            directory = place(scenario, out, force, suffix="-station")
-            stack.enter_context(withdrawn_unless_begun(directory))
-            last = stack.enter_context(ExitStack())
+        with leaving(scenario, manner, wishes, suffix="-station") as left:
             _say_whom_we_wait_for("the robot", link)
-            with progress_of(scenario) as told:
-                glance = StationGlance(scenario) if scenario.pace == "realtime" else None
-                clock = LoopClock(lambda tick: told(tick, glance.now() if glance else None))
-                record = StationRecord(directory, scenario.sample_time, _warn, clock, glance)
-                onlooker = watched_station(record, page.line if page else None, station, link)
-                listener = Listener(link, receiver)
-                ending = answer_alone(
-                    station, listener, scenario.silence_timeout, onlooker, clock, last
-                )
-            code = conclude(scenario, manner, ending, directory, report, page)
+            code = left.conclude(_answered(opened, link, left))
     raise typer.Exit(code)
+
+
+def _answered(opened: OpenStation, link: Endpoint, left: Leaving) -> Ending:
+    """The run, to its end."""
+    scenario, (station, receiver) = left.scenario, opened
+    with progress_of(scenario) as told:
+        glance = StationGlance(scenario) if scenario.pace == "realtime" else None
+        clock = LoopClock(lambda tick: told(tick, glance.now() if glance else None))
+        record = StationRecord(left.directory, scenario.sample_time, _warn, clock, glance)
+        onlooker = watched_station(record, left.line, station, link)
+        listener = Listener(link, receiver)
+        return answer_alone(station, listener, scenario.silence_timeout, onlooker, clock, left.last)
