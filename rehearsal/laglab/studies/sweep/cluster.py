@@ -14,7 +14,7 @@ from urllib.parse import urlsplit
 
 from laglab.errors import RefusedError
 from laglab.extras import SPREADING, require
-from laglab.studies.workers import Executor, cores
+from laglab.studies.workers import MOST_DEATHS, Executor, cores
 
 OURS = "local"
 SCHEMES = ("tcp", "tls")
@@ -109,6 +109,6 @@ def _own(workers: int, folder: str) -> Any:
         threads_per_worker=1,
         local_directory=folder,
         dashboard_address="127.0.0.1:0",  # without one it would take a fixed port, and warn
-        scheduler_kwargs={"dashboard": False},
+        scheduler_kwargs={"dashboard": False, "allowed_failures": MOST_DEATHS - 1},
         silence_logs=logging.CRITICAL,
     )
