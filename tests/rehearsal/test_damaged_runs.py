@@ -92,15 +92,16 @@ def test_a_damaged_file_is_told_in_a_line(
             assert len(errors) < 400
 
 
-@pytest.mark.parametrize("command", [COMPARE, FIGURE])
+@pytest.mark.parametrize("number", ["1e308", "1.7e308"])
+@pytest.mark.parametrize("command", [COMPARE, FIGURE, ANIMATE])
 def test_numbers_that_no_picture_has_room_for_are_told_in_a_line(
-    command: tuple[str, ...], copied: Path, ended: Callable[..., Any]
+    command: tuple[str, ...], number: str, copied: Path, ended: Callable[..., Any]
 ) -> None:
     trace = copied / "trace.csv"
     header, *rows = trace.read_text("utf-8").splitlines()
-    for number in (8, 9):
-        cells = rows[number].split(",")
-        rows[number] = ",".join([*cells[:2], "1e308", "-1e308", *cells[4:]])
+    for row in (8, 9):
+        cells = rows[row].split(",")
+        rows[row] = ",".join([*cells[:2], number, f"-{number}", *cells[4:]])
     trace.write_text("\n".join([header, *rows, ""]), "utf-8")
     code, _, errors = ended(*command)
     assert code == 4, errors

@@ -267,3 +267,8 @@ def test_by_default_is_drawn_what_says_something():
     labels = [axes.get_ylabel() for axes in draw_study(healthy).axes]
     assert not any("diverged" in label for label in labels)
     assert any("settling" in label for label in labels)
+
+
+def test_an_error_that_is_no_number_in_its_unit_warns_of_nothing() -> None:
+    rows = pandas.DataFrame([{"seed": 1, "rms_x": 1.7e308, "diverged_tick": 300.0}])
+    assert np.isinf(MeasureValues.by(runs_of(rows, {}, "study", None), "rms_x").values).all()

@@ -1,6 +1,7 @@
 """Names, numbers and folders that nobody thought of: a run, or a line that says what is wrong."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -91,6 +92,14 @@ def test_no_finite_number_is_too_large(key: str, value: float) -> None:
     assert laglab.run("lab", {**SHORT, **more, key: value}).summary.outcome == "completed"
 
 
+@pytest.mark.usefixtures("here")
+def test_an_error_whose_square_is_no_number_is_told_in_words(capsys: Capture) -> None:
+    moved = "plant.event=[{at = 0.1, place = [1e200, 0.0, 0.0]}]"
+    with pytest.raises(SystemExit):
+        main([*RUN, "--set", moved, "--out", "run"])
+    assert re.search("RMS error of delayed-ekf +x beyond 1e.154 m, y 2", capsys.readouterr().out)
+
+
 @pytest.mark.parametrize(
     "told",
     [
@@ -151,7 +160,7 @@ def test_a_run_whose_figure_cannot_be_drawn_has_a_verdict(here: Path, capsys: Ca
     longer = ("--duration", "0.5", "--set", "plant.kind=big_plant:Big", "--out", "run")
     code, error = ended(capsys, "run", "lab", *longer)
     assert code == 3
-    assert "warning: run/figure.png cannot be drawn: it shows numbers that are too large" in error
+    assert "warning: run cannot be drawn: it has numbers that are too large, in x;" in error
     assert "matplotlib" not in error
     assert "diverged" in laglab.open_run(here / "run").summary.verdict
 

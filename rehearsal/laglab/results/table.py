@@ -1,5 +1,6 @@
 """A run's numbers, for reading."""
 
+import sys
 from collections.abc import Mapping
 
 from rich.table import Table
@@ -58,7 +59,13 @@ def _distance(following: Following) -> str:
 def _errors(errors: Errors | None) -> str:
     if errors is None:
         return "nothing was estimated"
-    return f"x {errors.x:.3g} m, y {errors.y:.3g} m, θ {errors.theta:.3g} rad"
+    x, y, theta = map(_rms, (errors.x, errors.y, errors.theta))
+    return f"x {x} m, y {y} m, θ {theta} rad"
+
+
+def _rms(value: float) -> str:
+    """Those that are beyond all numbers are told as the largest there is."""
+    return "beyond 1e+154" if value == sys.float_info.max else _number(value)
 
 
 def _link_rows(link: LinkReport) -> dict[str, str]:

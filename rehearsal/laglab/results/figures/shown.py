@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from laglab.errors import UndrawableError
 from laglab.results.link_view import LinkView, link_view
 from laglab.results.numbers import (
     VARIANCES,
@@ -47,6 +48,9 @@ def clock(duration: float) -> Clock:
         return Clock(3600.0, "h")
     return Clock(60.0, "min") if duration > MINUTES else Clock(1.0, "s")
 
+
+TOO_LARGE = 1e300
+"""[m, rad] Beyond, an axis has no ends: twice as much is no number."""
 
 GAP = 5.5
 """Ticks without a claim, of those that are drawn, are not drawn over; a slow station leaves out
@@ -126,9 +130,20 @@ def broken(time: Array, rows: Array, longest: float) -> tuple[Array, Array]:
     return np.insert(time, after, time[after]), np.insert(rows, after, np.nan, axis=0)
 
 
+def _refuse_too_large(run: Run, trace: Trace) -> None:
+    """Raises UndrawableError; what is infinite is only left out."""
+    for name, column in trace.items():
+        if (np.isfinite(column) & (np.abs(column) > TOO_LARGE)).any():
+            raise UndrawableError(
+                f"{run.directory or run.summary.scenario} cannot be drawn: it has numbers that are "
+                f"too large, in {name}; did it diverge, or is it damaged?"
+            )
+
+
 def shown(run: Run) -> Shown:
-    """All that is drawn of it. Raises ResultsError."""
+    """All that is drawn of it. Raises ResultsError, UndrawableError."""
     trace = run.drawn
+    _refuse_too_large(run, trace)
     unit = clock(float(trace["time"][-1]))
     claims = run.drawn_table(CLAIMS_FILE)
     variances = np.stack([claims[name].astype(float) for name in VARIANCES], axis=1)

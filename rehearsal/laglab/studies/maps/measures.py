@@ -110,7 +110,8 @@ class MeasureValues(NamedTuple):
             return cls(of, diverged.astype(np.float64), diverged)
         values = runs.number(column)
         values[np.abs(values) < EXACT] = 0.0
-        return cls(of, values * of.factor, diverged)
+        with np.errstate(over="ignore"):  # of a filter that diverges
+            return cls(of, values * of.factor, diverged)
 
     @property
     def says_something(self) -> bool:
