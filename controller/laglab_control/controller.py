@@ -196,6 +196,10 @@ class Controller:
 
     def warning(self, control: Control) -> str | None:
         """What nobody who relies on the estimate may overlook; None while there is nothing."""
+        if self.config.guard and self._guard is None:
+            return (
+                f"{self.config.estimator} does not show what is wild: estimator.guard does nothing"
+            )
         return self._estimator.warning(control.estimate)
 
     def innovation(self, control: Control) -> Innovation | None:

@@ -22,9 +22,9 @@ from laglab_station.warned import MOST_TOLD, Warnings
 LATE = 20
 
 
-def run(estimator, p0, ticks=60, clock=None):
+def run(estimator, p0, ticks=60, clock=None, guard=False):
     """A robot at rest whose measurements come 20 ticks late; the station's report."""
-    config = StationConfig(estimator=estimator, initial_covariance=np.eye(3) * p0)
+    config = StationConfig(estimator=estimator, initial_covariance=np.eye(3) * p0, guard=guard)
     station, robot = Station(config, clock=clock), Sender(1, 1)
     for k in range(ticks):
         late = [Measurement(0.0, 0.0, 0.0, 0.0, 0.0, k - LATE, -1)] if k >= LATE else []
@@ -55,6 +55,14 @@ def test_a_gain_above_the_limit_is_warned_of_once(estimator):
 @pytest.mark.parametrize(("estimator", "p0"), [("popf", 1e-4), ("delayed-ekf", 1.0), ("raw", 1.0)])
 def test_otherwise_nothing_is_warned_of(estimator, p0):
     assert run(estimator, p0).warnings == ()
+
+
+@pytest.mark.parametrize("estimator", ["raw", "tue-predictor"])
+def test_a_guard_that_can_do_nothing_is_warned_of(estimator):
+    (warning,) = run(estimator, p0=1e-4, guard=True).warnings
+    told = f"{estimator} does not show what is wild: estimator.guard does nothing"
+    assert warning == f"tick 20: {told}"
+    assert run("delayed-ekf", p0=1e-4, guard=True).warnings == ()
 
 
 def test_ticks_are_timed_by_the_clock_given():

@@ -90,6 +90,11 @@ class TuePredictor(Estimator[TueState]):
         )
         return TueState(tick, x + np.array(pull), s, past)
 
+    @property
+    def is_watchable(self) -> bool:
+        """It weighs nothing, so nothing is wild."""
+        return False
+
     def innovation(self, state: TueState) -> Innovation | None:
         """It weighs nothing."""
         return None

@@ -88,6 +88,11 @@ class Rewinding(Estimator[RewindingState[S]]):
         """The estimator's own."""
         return RewindingState(self.estimator.restart(state.state, x, P), (), logged())
 
+    @property
+    def is_watchable(self) -> bool:
+        """As the estimator."""
+        return self.estimator.is_watchable
+
     def innovation(self, state: RewindingState[S]) -> Innovation | None:
         """The estimator's own."""
         return self.estimator.innovation(state.state)
