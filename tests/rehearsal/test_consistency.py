@@ -25,7 +25,7 @@ def made_up(seed, scale):
     """A filter that claims P = I while its errors have variance scale^2."""
     error = np.random.default_rng(seed).normal(size=(50, 3)) * scale
     squared = (error**2).sum(axis=1)
-    return Sample(error, np.ones((50, 3)), squared, squared, squared)
+    return Sample(error, np.ones((50, 3)), squared, squared, squared, squared > 0)
 
 
 def consistency(*samples):
@@ -85,6 +85,23 @@ def test_a_filter_that_claims_nothing_cannot_be_judged(laglab):
     ended = laglab("consistency", "lab", "--judge", "raw")
     assert (ended.returncode, ended.stdout) == (2, "")
     assert "--judge: must not be 'raw', which estimates nothing" in ended.stderr
+
+
+@pytest.mark.parametrize(
+    ("told", "why"),
+    [
+        (("--judge", "ekf", "--set", "link.measurement.loss=1.0"), "no measurement ever arrived"),
+        (("--judge", "tue-predictor"), "tue-predictor claims nothing: there is nothing to judge"),
+    ],
+)
+def test_what_cannot_be_judged_is_told_in_words(told, why, ended, tmp_path):
+    short = ("--duration", "0.5", "--seeds", "2", "--workers", "1", "--out", tmp_path / "a.png")
+    code, out, errors = ended("consistency", "lab", *short, *told)
+    assert code == 0, errors
+    assert f"warning: {why}" in out + errors
+    assert "nan" not in out
+    *_, lost, verdict = next(line for line in out.splitlines() if told[1] in line).split()
+    assert (lost, verdict) == ("0", "-")
 
 
 @pytest.mark.parametrize("scenario", ["lab", "lab-radio"])

@@ -36,17 +36,19 @@ class Known(NamedTuple):
     ahead_P: Array
     """(3, 3)."""
     n: int
+    came: bool
+    """Whether measurements came."""
 
 
 def known(controller: Controller, control: Control, news: bool) -> Known:
     """All that a filter knows at this tick; `news`: whether a measurement came."""
     x, P, n = control.pose, control.P, control.flight.command_delay
-    ahead = controller.at_arrival(control)
-    if x is None or P is None or ahead is None or not np.all(np.isfinite(x)):
-        return Known(NOTHING[0], NOTHING, np.nan, NOTHING[0], NOTHING, n)
+    if x is None or not np.all(np.isfinite(x)):
+        return Known(NOTHING[0], NOTHING, np.nan, NOTHING[0], NOTHING, n, news)
     innovation = controller.innovation(control) if news else None
     nis = normalised_squared(innovation) if innovation else np.nan
-    return Known(x, P, nis, ahead.x, ahead.P, n)
+    there, there_P = controller.at_arrival(control) or (NOTHING[0], NOTHING)
+    return Known(x, NOTHING if P is None else P, nis, there, there_P, n, news)
 
 
 @dataclass(frozen=True, eq=False)

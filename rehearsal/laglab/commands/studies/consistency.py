@@ -20,8 +20,9 @@ from laglab.studies.consistency import (
     draw_consistency,
     nth,
     samples,
+    unjudged,
 )
-from laglab.tables import terminal
+from laglab.tables import say, terminal
 
 JUDGED = ("ekf", "popf", "popf-exact", "delayed-ekf")
 MOST_SEEDS = 10_000
@@ -53,6 +54,8 @@ def consistency(
     shown = tracked(runs, seeds, "consistency", "seed")
     got = consistencies(names, shown, scenario.must_end(), scenario.link.m)
     terminal().print(consistency_table(scenario, got, seeds))
+    for why in dict.fromkeys(filter(None, map(unjudged, got))):
+        say(f"warning: {why}")
     save(draw_consistency(scenario, got, width), out)
     print(f"picture in {out}")
 

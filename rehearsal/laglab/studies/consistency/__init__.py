@@ -2,7 +2,7 @@
 
 from laglab.studies.consistency.judging import Job, Sample, judge, judged, nth, samples
 from laglab.studies.consistency.over_seeds import chi_square_bounds, consistencies
-from laglab.studies.consistency.report import consistency_table, draw_consistency
+from laglab.studies.consistency.report import consistency_table, draw_consistency, unjudged
 
 __all__ = [
     "Job",
@@ -15,4 +15,5 @@ __all__ = [
     "judged",
     "nth",
     "samples",
+    "unjudged",
 ]

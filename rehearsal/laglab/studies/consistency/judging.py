@@ -35,13 +35,15 @@ class Sample(NamedTuple):
     error: Array
     """(N+1, 3), of x̂_k."""
     variances: Array
-    """(N+1, 3), the diagonal of P."""
+    """(N+1, 3), the diagonal of P; NaN where nothing is claimed."""
     nees: Array
     """(N+1,); NaN where P is not positive definite."""
     nis: Array
     """(N+1,); NaN where nothing was measured."""
     nees_ahead: Array
     """(N+1,): of x̂_{k+n}, by which the command was made, when the robot was there."""
+    came: NDArray[np.bool_]
+    """(N+1,): whether measurements came."""
 
 
 def nth(scenario: Scenario, number: int) -> Scenario:
@@ -81,10 +83,10 @@ def judge(job: Job) -> dict[str, Sample]:
 def judged(said: Sequence[Known], trace: Trace) -> Sample:
     """What a filter said at the ticks of a run, beside where the robot was."""
     pose = robot_pose(trace)
-    x, P, nis, ahead, P_ahead, n = (np.array(column) for column in zip(*said, strict=True))
+    x, P, nis, ahead, P_ahead, n, came = (np.array(column) for column in zip(*said, strict=True))
     error = pose_difference(x, pose[: len(x)])
     arrival = np.arange(len(x)) + n
     there = np.where((arrival < len(pose))[:, np.newaxis], pose[arrival % len(pose)], np.nan)
     variances = np.diagonal(P, axis1=1, axis2=2)
     ahead_error = pose_difference(ahead, there)
-    return Sample(error, variances, nees(error, P), nis, nees(ahead_error, P_ahead))
+    return Sample(error, variances, nees(error, P), nis, nees(ahead_error, P_ahead), came)

@@ -58,9 +58,11 @@ class Consistency(NamedTuple):
     true: Array
     """(N+1-m, 3), those that the errors have."""
     indefinite: float
-    """The share of ticks at which P is not positive definite."""
+    """The share of ticks at which P is not positive definite; NaN where nothing is claimed."""
     diverged: int
     """Seeds."""
+    measured: int
+    """Ticks of all seeds at which measurements came."""
     bounds: tuple[float, float]
     """Of the average of all seeds at one tick, at 95 %."""
 
@@ -117,21 +119,22 @@ class _Sums:
         self._nees, self._nis, self._nees_ahead = (_Running(ticks) for _ in range(3))
         self._variances, self._squares = _Running(ticks, DEGREES), _Running(ticks, DEGREES)
         self._of_runs: list[float] = []
-        self._alive = self._indefinite = self._diverged = 0
+        self._claimed = self._indefinite = self._diverged = self._measured = 0
 
     @np.errstate(over="ignore")  # of a filter that diverges
     def add(self, sample: Sample) -> None:
         """The next seed."""
-        error, variances, nees, nis, nees_ahead = (each[self._delay :] for each in sample)
+        error, variances, nees, nis, nees_ahead = (each[self._delay :] for each in sample[:-1])
         self._nees.add(nees)
         self._nis.add(nis)
         self._nees_ahead.add(nees_ahead)
         self._variances.add(variances)
         self._squares.add(error**2)
         self._of_runs.append(float(mean_of_known(nees)))
-        alive = ~np.isnan(error[:, 0])
-        self._alive += int(alive.sum())
-        self._indefinite += int(np.isnan(nees[alive]).sum())
+        self._measured += int(sample.came.sum())
+        alive, claimed = ~np.isnan(error[:, 0]), ~np.isnan(variances[:, 0])
+        self._claimed += int(claimed.sum())
+        self._indefinite += int(np.isnan(nees[claimed]).sum())
         self._diverged += len(alive) < self._ticks or not alive[-1]
 
     def consistency(self) -> Consistency:
@@ -144,8 +147,9 @@ class _Sums:
             of_runs=np.array(self._of_runs),
             claimed=np.sqrt(np.maximum(self._variances.average.values, 0)),
             true=np.sqrt(self._squares.average.values),
-            indefinite=self._indefinite / self._alive if self._alive else np.nan,
+            indefinite=self._indefinite / self._claimed if self._claimed else np.nan,
             diverged=self._diverged,
+            measured=self._measured,
             bounds=chi_square_bounds(len(self._of_runs)),
         )
 

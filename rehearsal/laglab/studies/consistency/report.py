@@ -48,17 +48,32 @@ def _cells(one: Consistency) -> list[str]:
     with np.errstate(all="ignore"):  # of a filter that diverges
         claimed, true = (np.sqrt(mean_of_known(v**2)) for v in (one.claimed, one.true))
     return [
-        f"{one.nees.mean:.2f}",
-        f"{one.nees.inside:.0%}",
-        f"{one.nis.mean:.2f}",
-        f"{one.nis.inside:.0%}",
-        f"{one.nees_ahead.mean:.2f}",
-        f"{np.nanmax(one.of_runs, initial=0):.3g}",
-        *(f"{ratio:.2f}" for ratio in claimed / true),
-        f"{one.indefinite:.0%}",
+        _told(one.nees.mean, ".2f"),
+        _told(one.nees.inside, ".0%"),
+        _told(one.nis.mean, ".2f"),
+        _told(one.nis.inside, ".0%"),
+        _told(one.nees_ahead.mean, ".2f"),
+        _told(float(np.fmax.reduce(one.of_runs)), ".3g"),
+        *(_told(ratio, ".2f") for ratio in claimed / true),
+        _told(one.indefinite, ".0%"),
         str(one.diverged),
-        "ok" if one.consistent else "no",
+        "-" if unjudged(one) else "ok" if one.consistent else "no",
     ]
+
+
+def _told(value: float, form: str) -> str:
+    return "-" if np.isnan(value) else format(value, form)
+
+
+def unjudged(one: Consistency) -> str | None:
+    """Why a filter can be judged in part only; None: it can."""
+    if np.isnan(one.claimed).all():
+        return f"{one.estimator} claims nothing: there is nothing to judge it by"
+    if not one.measured:
+        return "no measurement ever arrived: there is no NIS"
+    if np.isnan(one.nis.values).all():
+        return f"{one.estimator} shows no innovation: there is no NIS"
+    return None
 
 
 def draw_consistency(
