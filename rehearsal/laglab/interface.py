@@ -9,7 +9,6 @@ from typing import get_args
 from laglab.errors import ResultsError, RunError, ScenarioError
 from laglab.extras import DRAWING, STEPPING, require
 from laglab.progress import progress_of
-from laglab.results.columns import read_columns
 from laglab.results.complete import Manner, complete, keep
 from laglab.results.place import place, withdrawn_unless_begun
 from laglab.results.run import Kept, Run
@@ -112,6 +111,6 @@ def _in_memory(done: Run) -> Run:
         name: read_shadow(shadow_file(done.directory, name))
         for name in done.scenario.estimator.compare
     }
-    tables = {name: read_columns(done.directory / name, kind) for name, kind in ROWS.items()}
+    tables = {name: done.table(name) for name in ROWS}
     kept = Kept(done.trace, tables, shadows)
     return Run(done.scenario, done.summary, None, kept)

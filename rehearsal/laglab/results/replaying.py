@@ -12,7 +12,7 @@ from msgspec.structs import astuple
 from numpy.typing import NDArray
 from rich.table import Table
 
-from laglab.results.columns import places, read_columns
+from laglab.results.columns import places
 from laglab.results.figures import INCHES, Width, legend, line, printed, sheet
 from laglab.results.figures.panels import (
     COMPONENTS,
@@ -88,7 +88,7 @@ def replayed_run(directory: Path, replays: Replays) -> Run:
     Raises: ResultsError, when the log stands without its run.
     """
     run = open_run(directory)
-    tables = {name: read_columns(directory / name, kind) for name, kind in ROWS.items()}
+    tables = {name: run.table(name) for name in ROWS}
     estimator = run.scenario.estimator.model_copy(update={"compare": tuple(replays)})
     scenario = run.scenario.model_copy(update={"estimator": estimator})
     m = scenario.link.m

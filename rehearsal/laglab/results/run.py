@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -24,7 +25,7 @@ from laglab.results.columns import (
     thinned,
 )
 from laglab.results.figures import Width, draw_run
-from laglab.results.shadows import Shadow, read_shadow, shadow_file, shadow_pieces, shadowing
+from laglab.results.shadows import Shadow, shadow_file, shadow_pieces, shadowing
 from laglab.results.summary import SUMMARY_FILE, Summary, read_summary
 from laglab.scenario import Overrides, Scenario, load
 from laglab_gateway import (
@@ -96,13 +97,13 @@ class Run:
 
         Raises NoRunError.
         """
-        return self._table(LINK_FILE)
+        return self.table(LINK_FILE)
 
     @cached_property
     def arrivals(self) -> Columns:
         """When each measurement and each command came, columns as in arrivals.csv: its delay is
         `arrived` - `tick` [ticks]. Raises NoRunError."""
-        return self._table(ARRIVALS_FILE)
+        return self.table(ARRIVALS_FILE)
 
     @cached_property
     def claims(self) -> Columns:
@@ -110,18 +111,18 @@ class Run:
 
         Raises NoRunError.
         """
-        return self._table(CLAIMS_FILE)
+        return self.table(CLAIMS_FILE)
 
     @cached_property
     def timing(self) -> Columns:
         """How late each tick on the wall clock began and was answered [s]. Raises NoRunError."""
-        return self._table(TIMING_FILE)
+        return self.table(TIMING_FILE)
 
     def table_pieces(self, name: str) -> Iterator[Columns]:
         """The rows of one of these files, as many at a time as memory always has room for."""
         if self.kept:
             return iter([self.kept.tables[name]])
-        return column_pieces(self._folder / name, ROWS[name])
+        return column_pieces(self._file(name), ROWS[name])
 
     def figure(self, width: Width = "two") -> Figure:
         """The run as a picture, as wide as one column of a page or as two, to be shown or saved.
@@ -199,17 +200,24 @@ class Run:
                 f"{Ts:g} s, says {SUMMARY_FILE}: it was cut off since, or is another run's"
             )
 
-    def _table(self, name: str) -> Columns:
-        return (
-            self.kept.tables[name] if self.kept else read_columns(self._folder / name, ROWS[name])
-        )
+    def table(self, name: str) -> Columns:
+        """All rows of one of these files. Raises NoRunError."""
+        return self.kept.tables[name] if self.kept else read_columns(self._file(name), ROWS[name])
 
     def shadow_pieces(self, name: str) -> Iterator[Shadow]:
         """What an estimator said that shadowed the run, as many rows at a time as memory always has
         room for. Raises NoRunError."""
         if self.kept:
             return iter([self.kept.shadows[name]])
-        return shadow_pieces(shadow_file(self._folder, name))
+        return shadow_pieces(self._file(shadow_file(self._folder, name).name))
+
+    def _file(self, name: str) -> Path:
+        """Where it is. Raises NoRunError: it was cut off since. Of a run that was cut short itself
+        the system may have written a part of a line."""
+        path = self._folder / name
+        if self.summary.outcome is not None and not _ends_in_whole(path):
+            raise NoRunError(f"{path} ends within a line: it was cut off since")
+        return path
 
     @property
     def _folder(self) -> Path:
@@ -218,9 +226,7 @@ class Run:
         return self.directory
 
     def _shadow(self, name: str) -> Shadow:
-        return (
-            self.kept.shadows[name] if self.kept else read_shadow(shadow_file(self._folder, name))
-        )
+        return self.kept.shadows[name] if self.kept else joined(self.shadow_pieces(name))
 
     @property
     def _is_short(self) -> bool:
@@ -233,6 +239,16 @@ class Run:
             shadow = joined(at_ticks(each, whole["tick"]) for each in self.shadow_pieces(name))
             whole |= shadowing(whole, shadow, name)
         return whole
+
+
+def _ends_in_whole(path: Path) -> bool:
+    """Whether its last line has an end, if the file is there and has one."""
+    try:
+        with path.open("rb") as file:
+            file.seek(-1, os.SEEK_END)
+            return file.read() == b"\n"
+    except OSError:  # who reads it tells of it
+        return True
 
 
 def open_run(directory: str | Path) -> Run:
