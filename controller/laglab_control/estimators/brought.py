@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from laglab_control.errors import ControlError, PluginFailedError
+from laglab_control.errors import PluginFailedError
 from laglab_control.estimators.interface import (
     Calibration,
     Estimator,
@@ -24,6 +24,7 @@ from laglab_control.plugins import (
     called,
     in_one_line,
     made,
+    one_line,
     refuse_misfit,
     shown,
 )
@@ -178,7 +179,7 @@ class Brought(Estimator[State]):
     def _refuse_other(self, method: str, state: State, tick: int) -> None:
         try:
             there = state.tick
-        except AttributeError:
+        except Exception:  # it may look its attributes up by itself
             raise self._failed(method, f"a state with tick, x and P, not {shown(state)}") from None
         if there != tick:
             raise self._failed(method, f"a state of tick {tick}, not {shown(there)}")
@@ -187,8 +188,8 @@ class Brought(Estimator[State]):
         self._refuse_other(method, state, tick)
         try:
             x, P, pose = state.x, state.P, pose_of(state)
-        except (AttributeError, TypeError, ControlError) as error:
-            raise self._failed(method, f"a state with tick, x and P: {error}") from error
+        except Exception as error:  # as above, or it has no place in the plane
+            raise self._failed(method, f"a state with tick, x and P: {one_line(error)}") from error
         if x is None:
             return state
         if not isinstance(x, np.ndarray) or x.ndim != 1 or not _is_finite(x):

@@ -11,7 +11,7 @@ from laglab_control.plugins.finding import (
     plugin_names,
     source_of,
 )
-from laglab_control.plugins.wording import first_line, in_one_line, shown
+from laglab_control.plugins.wording import first_line, in_one_line, one_line, shown
 
 __all__ = [
     "Group",
@@ -25,6 +25,7 @@ __all__ = [
     "installed_plugins",
     "is_module_class",
     "made",
+    "one_line",
     "plugin_names",
     "refuse_misfit",
     "shown",

@@ -101,6 +101,17 @@ class Objects(At40):
         return right._replace(x=np.array([None, 1, 2, 3, 4]))
 
 
+class LooksItUp(At40):
+    """Its state fails in a way of its own where it has no such attribute."""
+
+    def other(self, right):
+        class State:
+            def __getattr__(self, name):
+                return {"tick": right.tick}[name]
+
+        return State()
+
+
 class Text(At40):
     def other(self, right):
         return right._replace(x="x")

@@ -37,6 +37,7 @@ ANSWERS = {
     "estimator:Objects": "Objects.correct must answer a finite array x (d,), not",
     "estimator:Short": "Short.correct must answer a state with tick, x and P: ",
     "estimator:NoState": "NoState.correct must answer a state with tick, x and P, not array([",
+    "estimator:LooksItUp": "LooksItUp.correct must answer a state with tick, x and P: KeyError",
     "estimator:Text": "Text.correct must answer a state with tick, x and P: ",
     "estimator:NanClaim": "NanClaim.correct must answer a finite P (5, 5) or",
     "estimator:Unspeakable": "Unspeakable.correct: Silent",
