@@ -77,6 +77,10 @@ class _Buffer(io.BufferedWriter):
     def close(self) -> None:
         self.flush()
 
+    def detach(self) -> Any:
+        self.flush()
+        return self.raw
+
 
 class _Text(io.TextIOWrapper):
     """Code that somebody brought may close it, or take its buffer: it stays open to us."""

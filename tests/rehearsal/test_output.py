@@ -116,6 +116,7 @@ def test_where_nothing_can_be_said_the_code_says_it(shell: Callable[..., Ended])
         "sys.stdout.close()",
         "sys.stdout.buffer.close()",
         "sys.stdout.detach()",
+        "sys.stdout.buffer.detach()",
         "sys.stdout = io.TextIOWrapper(sys.stdout.detach())",
         "sys.stderr.close()",
     ],
