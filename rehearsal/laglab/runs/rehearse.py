@@ -238,6 +238,8 @@ class _Rehearsal:
                 self._ending = _with_station(self._ending, station)
             case Failed(reason, begun):
                 self._fail(reason, begun)
+                if not begun:
+                    self._gateway.stop()  # nobody will ever call there
             case Ended(how):
                 self._station_over = True
                 if self._ending.station is None and not self._problems:
@@ -249,7 +251,9 @@ class _Rehearsal:
         self._ending = replace(self._ending, begun=self._ending.begun or begun)
 
     def _summed_up(self) -> Ending:
-        outcome = self._ending.outcome
-        if outcome is not None and outcome.reason is not EndReason.FAILED:
-            return self._ending.warned(self._problems)
-        return replace(self._ending, problem="; ".join(self._problems))
+        ending = self._ending
+        if self._problems and not ending.begun:
+            ending = replace(ending, outcome=None)  # the side that was left was stopped
+        if ending.outcome is not None and ending.outcome.reason is not EndReason.FAILED:
+            return ending.warned(self._problems)
+        return replace(ending, problem="; ".join(self._problems))

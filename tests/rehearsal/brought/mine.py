@@ -1,5 +1,6 @@
 """What a user wrote: filters and laws that work, and some that fail at tick 40."""
 
+import sys
 import time
 from typing import NamedTuple
 
@@ -99,6 +100,15 @@ class Complex(At40):
 class Objects(At40):
     def other(self, right):
         return right._replace(x=np.array([None, 1, 2, 3, 4]))
+
+
+class AtHome(Wide):
+    """Cannot be made in a process of ours."""
+
+    def __init__(self, model):
+        if sys.argv[0].endswith("child.py"):
+            raise RuntimeError("there is no licence here")
+        super().__init__(model)
 
 
 class LooksItUp(At40):

@@ -145,6 +145,16 @@ def test_where_the_station_fails_both_sides_have_their_say(
     assert ending.link is not None
 
 
+def test_where_the_station_cannot_begin_the_robot_is_not_blamed(
+    brought: Path, ended: Ended
+) -> None:
+    code, _, errors = ended(*LAB, "--estimator", "mine:AtHome", "--transport", "udp")
+    assert code == 2, errors
+    assert errors.startswith("laglab: mine:AtHome cannot be made: RuntimeError: there is no lic")
+    assert "robot" not in errors
+    assert not (brought / "run").exists()
+
+
 def test_a_guard_lets_no_such_state_pass(brought: Path, ended: Ended) -> None:
     own = ("--estimator", "mine:Guarded", "--set", "estimator.guard=true")
     code, _, stderr = ended(*LAB, *own, *INLINE)
