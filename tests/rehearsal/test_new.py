@@ -86,6 +86,7 @@ def test_each_template_keeps_its_interface(
         ("My Own", "a package's name is of small letters and digits"),
         ("-x", "No such option"),
         ("class", "Python has something of that name already"),
+        ("none", "Python has something of that name already"),
         ("numpy", "Python has something of that name already"),
         ("delayed-ekf", "laglab has something of that name already"),
         ("polar", "laglab has something of that name already"),
@@ -98,3 +99,17 @@ def test_what_cannot_be_made_is_one_line(
 ) -> None:
     (tmp_path / "there").mkdir()
     assert said in refused("new", "law", name, "--out", tmp_path)
+
+
+def test_what_cannot_be_made_whole_is_not_there(
+    tmp_path: Path, refused: Callable[..., str]
+) -> None:
+    """The test's name is longer than the package's: too long for a file."""
+    assert "File name too long" in refused("new", "law", "a" * 250, "--out", tmp_path, code=4)
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_commands_that_are_told_can_be_copied(tmp_path: Path, ended: Ended) -> None:
+    folder = tmp_path / "my laws"
+    done = ended("new", "law", "begun-law", "--out", folder)
+    assert f"pip install -e '{folder / 'begun-law'}'" in done.out

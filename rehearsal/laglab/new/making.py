@@ -2,6 +2,7 @@
 
 import keyword
 import re
+import shlex
 import shutil
 from collections.abc import Mapping
 from importlib import resources
@@ -11,7 +12,7 @@ from string import Template
 from typing import NamedTuple
 
 from laglab.check import KINDS, SHIPPED, Kind
-from laglab.errors import PlaceError, ResultsError, ScenarioError
+from laglab.errors import PlaceError, ScenarioError
 from laglab.files import write_whole
 
 TEMPLATES = resources.files("laglab.new") / "templates"
@@ -40,7 +41,7 @@ def make_package(kind: Kind, name: str, parent: Path) -> Made:
     told = {
         "name": name,
         "module": module,
-        "class_name": "".join(part.capitalize() for part in module.split("_")),
+        "class_name": _class_name(module),
         "group": KINDS[kind],
         "kind": kind,
         "kind_with_article": f"an {kind}" if kind == "estimator" else f"a {kind}",
@@ -59,11 +60,11 @@ def make_package(kind: Kind, name: str, parent: Path) -> Made:
         for file, template in files.items():
             text = (TEMPLATES / f"{template}.template").read_text(encoding="utf-8")
             write_whole(folder / file, Template(text).substitute(told))
-    except ResultsError:
+    except BaseException:
         shutil.rmtree(folder, ignore_errors=True)  # the next attempt is to find none
         raise
-    use = RUNS[kind].format(name=name)
-    commands = (f"pip install -e {folder}", f"laglab check {name}", use, f"pytest {folder}")
+    use, spelled = RUNS[kind].format(name=name), shlex.quote(str(folder))
+    commands = (f"pip install -e {spelled}", f"laglab check {name}", use, f"pytest {spelled}")
     return Made(folder, commands)
 
 
@@ -75,6 +76,11 @@ def _module(name: str) -> str:
     if any(name in names for names in SHIPPED.values()):
         raise ScenarioError(f"{name}: laglab has something of that name already: take another one")
     module = name.replace("-", "_")
-    if keyword.iskeyword(module) or find_spec(module) is not None:
+    taken = map(keyword.iskeyword, (module, _class_name(module)))
+    if any(taken) or find_spec(module) is not None:
         raise ScenarioError(f"{name}: Python has something of that name already: take another one")
     return module
+
+
+def _class_name(module: str) -> str:
+    return "".join(part.capitalize() for part in module.split("_"))
