@@ -36,13 +36,18 @@ def folder_place(named: str, path: Path) -> Path:
     return path
 
 
-def file_place(named: str, path: Path) -> Path:
-    """The file, which can be written; what it holds is still there. Raises PlaceError."""
+def file_place(named: str, path: Path, read: Path | None = None) -> Path:
+    """The file, which can be written; what it holds is still there. Raises PlaceError.
+
+    `read`: what is written is made of that one, so it is another.
+    """
     _refuse_nameless(named, path)
     try:
         there = path.exists() or path.is_symlink()
         if path.is_dir():
             raise PlaceError(f"{named} {path}: that is a folder: name a file")
+        if read and path.is_file() and read.exists() and path.samefile(read):
+            raise PlaceError(f"{named} {path}: that is the file to be read: name another")
         if path.is_file() or not there:  # to open a pipe has consequences
             path.open("ab").close()
         if not there:

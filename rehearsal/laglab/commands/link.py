@@ -194,8 +194,7 @@ def import_(
     else:
         others = {"--interval": interval, "--back": back, "--clocks-within": clocks_within}
         _refuse(file, "is a table of netem's", others)
-    out = out or Path("link.csv" if table is None else "link.toml")
-    file_place("--out", out)
+    out = file_place("--out", out or Path("link.csv" if table is None else "link.toml"), file)
     if table is not None:
         late = Impairments(extra_delay=table)
         write_whole(out, link_toml(FittedLink(0, 0, late, late)))
@@ -259,7 +258,7 @@ def fit(
     if figure is not None:
         require(DRAWING)
         picture_place(figure, "--figure")
-    file_place("--out", out)
+    file_place("--out", out, file)
     on = load(scenario, {"sample_time": interval})
     found = fit_link(read_measured(file, interval, (n, m)), late)
     fitted = scenario_toml(on, found.link)
