@@ -7,7 +7,7 @@ from time import monotonic
 from typing import Self
 
 from laglab_protocol.endpoints.interface import Endpoint
-from laglab_protocol.endpoints.terminals import make_pty
+from laglab_protocol.endpoints.terminals import make_pty, spelled_one_way
 from laglab_protocol.endpoints.wire import Wire
 from laglab_protocol.errors import PortBusyError
 
@@ -47,7 +47,7 @@ class SerialPair:
 
     def __init__(self, path_1: str, path_2: str, baud: int) -> None:
         """Raises NoSuchPortError, PortBusyError when a path cannot be had."""
-        if path_1 == path_2:
+        if spelled_one_way(path_1) == spelled_one_way(path_2):
             raise PortBusyError(f"{path_1}: two ports need two paths: choose another for one")
         with ExitStack() as stack:
             first, second = (stack.enter_context(make_pty(path)) for path in (path_1, path_2))

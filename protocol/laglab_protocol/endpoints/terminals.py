@@ -1,5 +1,8 @@
 """Serial ports and ptys, on systems that have such terminals; everything else does without."""
 
+import os
+from pathlib import Path
+
 from laglab_protocol.endpoints.interface import Endpoint
 from laglab_protocol.errors import NoSuchPortError
 
@@ -21,6 +24,11 @@ def open_port(name: str, device: str, baud: int) -> Endpoint:
     from laglab_protocol.endpoints.tty import SerialPort
 
     return SerialPort(device, baud)
+
+
+def spelled_one_way(path: str | Path) -> Path:
+    """The path of a link, the same whichever way leads into its folder."""
+    return Path(os.path.realpath(Path(path).parent), Path(path).name)
 
 
 def make_pty(path: str) -> Endpoint:

@@ -16,6 +16,7 @@ from time import monotonic
 import serial
 
 from laglab_protocol.endpoints.interface import Address, Endpoint
+from laglab_protocol.endpoints.terminals import spelled_one_way
 from laglab_protocol.endpoints.waiting import first_bytes, writable
 from laglab_protocol.errors import (
     FarEndGoneError,
@@ -224,7 +225,7 @@ def _claim(link: Path) -> socket.socket | None:
     with their program, nobody can tell."""
     if sys.platform != "linux":
         return None
-    name = hashlib.sha256(os.fsencode(link.absolute())).hexdigest()[:40]
+    name = hashlib.sha256(os.fsencode(spelled_one_way(link))).hexdigest()[:40]
     claim = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
     try:
         claim.bind(f"\0laglab-pty-{name}")

@@ -154,6 +154,9 @@ def test_pulling_the_cable_is_noticed_at_both_ports(tmp_path: Path, stack: ExitS
 def test_two_ports_need_two_paths(tmp_path: Path) -> None:
     with pytest.raises(PortBusyError, match="two paths"):
         SerialPair(str(tmp_path / "one"), str(tmp_path / "one"), BAUD)
+    (tmp_path / "here").symlink_to(tmp_path)
+    with pytest.raises(PortBusyError, match="two paths"):
+        SerialPair(str(tmp_path / "one"), str(tmp_path / "here" / "one"), BAUD)
 
 
 def test_the_first_port_goes_when_the_second_cannot_be_made(tmp_path: Path) -> None:

@@ -116,8 +116,10 @@ def test_a_file_is_not_replaced(tmp_path: Path) -> None:
 def test_nor_is_the_link_of_who_still_runs(stack: ExitStack, tmp_path: Path) -> None:
     path = tmp_path / "robot"
     robot = stack.enter_context(open_endpoint(f"pty://{path}"))
-    with pytest.raises(PortBusyError, match="still runs"):
-        open_endpoint(f"pty://{path}")
+    (tmp_path / "here").symlink_to(tmp_path)
+    for same in (path, tmp_path / "here" / "robot"):
+        with pytest.raises(PortBusyError, match="still runs"):
+            open_endpoint(f"pty://{same}")
     station = stack.enter_context(open_endpoint(f"serial://{path}:57600"))
     station.send(b"hello")
     assert robot.receive(WAIT) == b"hello"
