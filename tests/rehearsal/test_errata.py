@@ -41,3 +41,8 @@ def test_the_command_prints_a_line_for_each(laglab):
     for erratum in Erratum:
         assert f"({erratum.equation}) {erratum.printed}" in ended.stdout
     assert "as corrected" in ended.stdout
+
+
+def test_seeds_that_are_none_are_refused_before_anything_runs(refused):
+    said = refused("errata", "fig6", "--seed", str(2**31 - 2), "--seeds", "3")
+    assert "fig6: seed: must be below 2147483648" in said
