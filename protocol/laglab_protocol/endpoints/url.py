@@ -24,7 +24,7 @@ def open_endpoint(url: str) -> Endpoint:
         case "udpin":
             return UdpIn(*_host_and_port(url, rest))
         case "udpout":
-            return UdpOut(*_host_and_port(url, rest))
+            return UdpOut(*_host_and_port(url, rest, least=1))  # nobody listens at 0
         case "serial":
             return open_port(url, *_device_and_baud(url, rest, ":"))
         case "device":
@@ -45,11 +45,11 @@ def _split_scheme(url: str) -> tuple[str, str]:
     return scheme, rest.removeprefix("//")
 
 
-def _host_and_port(url: str, rest: str) -> tuple[str, int]:
+def _host_and_port(url: str, rest: str, least: int = 0) -> tuple[str, int]:
     host, colon, port = rest.rpartition(":")
     if not colon:
         raise BadUrlError(f"{url!r}: no port: write host:port")
-    return host.strip("[]") or "127.0.0.1", _number(url, "port", port, 65535)
+    return host.strip("[]") or "127.0.0.1", _number(url, "port", port, 65535, least)
 
 
 def _device_and_baud(url: str, rest: str, separator: str) -> tuple[str, int]:

@@ -21,6 +21,7 @@ from laglab_protocol import (
         ("udpin://127.0.0.1", "port '//127.0.0.1'|no port"),
         ("udpin://127.0.0.1:many", "port 'many'"),
         ("udpout://127.0.0.1:70000", "port '70000'"),
+        ("udpout://127.0.0.1:0", "port '0' is no number from 1 to"),
         ("serial:///dev/ttyUSB0", "no baud"),
         ("serial:///dev/ttyUSB0:fast", "baud 'fast'"),
         ("/dev/ttyUSB0", "no baud"),
