@@ -1,5 +1,6 @@
 """Moving pictures: the command makes one, and the README opens with one that it made."""
 
+import signal
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -8,7 +9,7 @@ import pytest
 from PIL import Image
 
 import laglab
-from laglab.results.figures.moving import Scene
+from laglab.results.figures.moving import Scene, save_animation
 from laglab.results.figures.shown import shown
 
 ROOT = Path(__file__).parents[2]
@@ -41,6 +42,25 @@ def test_each_robot_is_drawn_where_it_was() -> None:
     for place, suffix in ((body, ""), (guess, "_est")):
         true = [run.trace[axis + suffix][50] for axis in ("x", "y")]
         assert place == pytest.approx(true, abs=0.02 * size)
+
+
+def test_an_interrupt_before_the_first_frame_is_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The library had no file to make of no frames, and said so instead."""
+    run = laglab.run("lab", {"duration": 0.1})
+    monkeypatch.setattr(Scene, "times", lambda _: iter([-1.0]))
+    show = Scene.show
+
+    def interrupted(scene: Scene, time: float) -> list[Any]:
+        if time < 0:
+            signal.raise_signal(signal.SIGINT)
+        return show(scene, time)
+
+    monkeypatch.setattr(Scene, "show", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        save_animation([run], tmp_path / "run.gif")
+    assert not list(tmp_path.iterdir())
 
 
 def test_what_is_no_gif_is_refused(refused: Callable[..., str]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -57,7 +58,13 @@ def save_animation(runs: Sequence[Run], path: Path) -> None:
         movie = FuncAnimation(
             scene.figure, scene.show, frames=list(scene.times()), init_func=list, blit=False
         )
-        writer = PillowWriter(fps=FRAMES_PER_SECOND)
+
+        class Writer(PillowWriter):
+            def finish(self) -> None:
+                with suppress(IndexError):  # of no frame: who interrupts before the first
+                    super().finish()
+
+        writer = Writer(fps=FRAMES_PER_SECOND)
         beside = path.with_name(f".{path.name}.new.gif")
         try:
             movie.save(str(beside), writer=writer, dpi=DOTS_PER_INCH)
