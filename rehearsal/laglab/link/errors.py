@@ -19,3 +19,9 @@ class NobodyAnswersError(LaglabError):
     """Nothing comes from the far end."""
 
     exit_code = 4
+
+
+class BegunAgainError(LaglabError):
+    """The far end was started again while the link was measured."""
+
+    exit_code = 4

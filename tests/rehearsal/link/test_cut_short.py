@@ -94,6 +94,32 @@ def test_a_line_that_is_unplugged_keeps_what_was_measured(start: Start, tmp_path
     assert_kept(tmp_path, said)
 
 
+def test_an_echo_that_is_started_again_ends_the_measurement(start: Start, tmp_path: Path) -> None:
+    """It numbers its frames anew: a gap in them would be where none was."""
+
+    def begin_again() -> None:
+        if listener.heard >= ENOUGH:
+            listener.then = end
+            raise OverError
+
+    def end() -> None:
+        if probe.poll() is not None:
+            raise OverError
+
+    with Codec(ROBOT_SYSTEM, ROBOT_COMPONENT) as codec, open_endpoint("udpin://127.0.0.1:0") as at:
+        listener = Counting(at, codec.receiver)
+        listener.then = begin_again
+        probe = start("link", "probe", at.name.replace("udpin", "udpout"), "--duration", "30")
+        for _ in range(2):
+            with contextlib.suppress(OverError):
+                answer(listener, codec, lambda _: None)
+    said, errors = probe.communicate(timeout=20)
+    assert probe.returncode == 4
+    assert "what answers there was started again" in errors
+    assert_kept(tmp_path, said)
+    assert len(read_measured(tmp_path / "link.csv", 0.01).command.delay) <= ENOUGH
+
+
 def test_before_anybody_answers_there_is_nothing_to_keep(start: Start, tmp_path: Path) -> None:
     with open_endpoint("udpin://127.0.0.1:0") as silent:
         url = silent.name.replace("udpin", "udpout")

@@ -117,6 +117,8 @@ class Prober:
         self.count = count
         self.answered = 0
         """How many of the other end's first `count` probes were heard."""
+        self.far_end_began_again = False
+        """Whether it numbers its probes from the first on once more."""
         self._sent: list[int] = []
         self._came: dict[int, int] = {}
         self._heard: dict[int, tuple[int, int]] = {}
@@ -145,7 +147,10 @@ class Prober:
 
     def hear(self, probe: Probe, now_ns: int) -> None:
         """Take a probe of the other end; those of another session are passed over."""
-        if probe.session != self.end.session or probe.sequence in self._heard:
+        if probe.session != self.end.session:
+            return
+        if before := self._heard.get(probe.sequence):
+            self.far_end_began_again |= before[0] != probe.time_ns
             return
         self._heard[probe.sequence] = probe.time_ns, now_ns
         self.answered += probe.sequence < self.count
@@ -171,11 +176,16 @@ class Prober:
 
     def cut(self, now_ns: int) -> None:
         """It is over before its time: those count that were sent so long ago that what came of them
-        would be told by now."""
+        would be told by then."""
         told_after = self._round_trip + self.end.interval_us * 1000
         self.count = bisect_right(self._sent, now_ns - told_after)
         del self._sent[self.count :]
         self.answered = sum(number < self.count for number in self._heard)
+
+    @property
+    def last_heard_ns(self) -> int:
+        """When something of the other end came last."""
+        return max((came for _, came in self._heard.values()), default=0)
 
     def times(self) -> tuple[ClockTimes, ClockTimes]:
         """Of our frames, and of as many of the other end's: sent by one clock, came by the other.

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from laglab.link.errors import LinkPlaceError, NobodyAnswersError
+from laglab.link.errors import BegunAgainError, LinkPlaceError, NobodyAnswersError
 from laglab.link.measured import Flags, Flow, MeasuredLink, bursts, gaps
 from laglab.link.probing.clock import WallClock
 from laglab.link.probing.clocks import Clocks, seen_by_clocks
@@ -24,6 +24,9 @@ from laglab_protocol import (
 
 LEAST_ASKED = 0.02
 """[s] The shortest interval of probes before anybody has answered."""
+
+CutShort = KeyboardInterrupt | EndpointError | BegunAgainError
+"""What ends a measurement before its time."""
 
 
 class ProbePlan(NamedTuple):
@@ -43,7 +46,7 @@ class Probed(NamedTuple):
     """What was measured of a link."""
 
     link: MeasuredLink
-    cut_short: KeyboardInterrupt | EndpointError | None
+    cut_short: CutShort | None
     """What ended it before its time."""
 
 
@@ -85,7 +88,8 @@ def probe(
     """Measure the link to whoever answers there; `told` is told how it goes.
 
     Raises NobodyAnswersError, LinkPlaceError when what answers has a rate of its own, and before
-    anything is measured KeyboardInterrupt, and an EndpointError when the link is gone.
+    anything is measured KeyboardInterrupt, and an EndpointError when the link is gone, or
+    BegunAgainError.
     """
     sizes = real_sizes(codec.sender)
     if said := overload(link.link.name, sizes, plan.interval):
@@ -96,7 +100,7 @@ def probe(
     session = secrets.randbelow(SESSIONS)
     _find(talk, Prober(session, 0, interval_us, filler), plan, link.link.name)
     prober = Prober(following(session), plan.frames, interval_us, filler)
-    cut_short = _ask(talk, prober, told)
+    cut_short = _ask(talk, prober, told, link.link.name)
     return Probed(_measured(prober, plan, sizes), cut_short)
 
 
@@ -122,9 +126,7 @@ def _find(talk: _Talk, prober: Prober, plan: ProbePlan, name: str) -> None:
     )
 
 
-def _ask(
-    talk: _Talk, prober: Prober, told: Callable[[Prober], None]
-) -> KeyboardInterrupt | EndpointError | None:
+def _ask(talk: _Talk, prober: Prober, told: Callable[[Prober], None], name: str) -> CutShort | None:
     """All that is to be asked; gives what cut it short after something was measured."""
     due = talk.clock()
     try:
@@ -134,8 +136,14 @@ def _ask(
             due += prober.end.interval_us * 1000
             for message, now in talk.hear_until(due):
                 prober.hear(message, now)
-    except (KeyboardInterrupt, EndpointError) as error:
-        prober.cut(talk.clock())
+            if prober.far_end_began_again:
+                raise BegunAgainError(
+                    f"{name}: what answers there was started again: what was measured before is "
+                    "kept; measure again"
+                )
+    except (KeyboardInterrupt, EndpointError, BegunAgainError) as error:
+        began_again = isinstance(error, BegunAgainError)
+        prober.cut(prober.last_heard_ns if began_again else talk.clock())
         if not prober.answered:
             raise
         return error
