@@ -87,6 +87,7 @@ def test_each_template_keeps_its_interface(
         ("-x", "No such option"),
         ("class", "Python has something of that name already"),
         ("none", "Python has something of that name already"),
+        ("setup", "Python has something of that name already"),
         ("numpy", "Python has something of that name already"),
         ("delayed-ekf", "laglab has something of that name already"),
         ("polar", "laglab has something of that name already"),

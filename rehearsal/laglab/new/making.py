@@ -22,6 +22,9 @@ RUNS: Mapping[Kind, str] = {
     "plant": "laglab run lab --set plant.kind={name}",
 }
 
+RUN_BY_SETUPTOOLS = "setup"
+"""A module of that name is a script to it, that makes the package."""
+
 
 class Made(NamedTuple):
     """What was made."""
@@ -76,8 +79,8 @@ def _module(name: str) -> str:
     if any(name in names for names in SHIPPED.values()):
         raise ScenarioError(f"{name}: laglab has something of that name already: take another one")
     module = name.replace("-", "_")
-    taken = map(keyword.iskeyword, (module, _class_name(module)))
-    if any(taken) or find_spec(module) is not None:
+    words = any(map(keyword.iskeyword, (module, _class_name(module))))
+    if words or module == RUN_BY_SETUPTOOLS or find_spec(module) is not None:
         raise ScenarioError(f"{name}: Python has something of that name already: take another one")
     return module
 
