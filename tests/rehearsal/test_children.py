@@ -1,8 +1,10 @@
 """Processes of our own that end as nobody expects: whoever waits for them is told."""
 
+import os
 import subprocess
 import sys
 import tempfile
+import time
 from functools import partial
 from pathlib import Path
 from queue import Queue
@@ -10,7 +12,8 @@ from queue import Queue
 import pytest
 
 from laglab.errors import RunError
-from laglab.runs.processes.child import Child, Letter, _read
+from laglab.interrupts import INTERRUPTED
+from laglab.runs.processes.child import HEEDED_WITHIN, Child, Letter, _read
 from laglab.runs.processes.reports import Computed, Ended
 from laglab.studies.workers import shared_out
 from laglab_gateway import StationSilentError
@@ -52,6 +55,67 @@ def test_one_that_dies_in_the_middle_of_a_report_has_ended(signal: int, called: 
         _read(Child("worker", process), inbox)
     assert inbox.get_nowait().report == Ended(f"the worker process was killed by {called}")
     assert inbox.empty()
+
+
+SWALLOWING = """\
+import time
+from queue import Queue
+from laglab.runs.processes.child import Tell, started
+from laglab.runs.processes.reports import Listening, Order
+
+def swallow(order: Order, tell: Tell) -> None:
+    tell(Listening(""))
+    for _ in range(600):
+        try:
+            time.sleep(0.1)
+        except:
+            pass
+
+if __name__ == "__main__":
+    inbox = Queue()
+    with started("swallowing", "swallowing:swallow", Order("", ""), inbox):
+        print(inbox.get().report, flush=True)
+        inbox.get()
+"""
+
+
+@pytest.mark.slow
+def test_who_swallows_interrupts_does_not_outlive_a_parent_that_is_killed(tmp_path: Path) -> None:
+    (tmp_path / "swallowing.py").write_text(SWALLOWING)
+    temporary = tmp_path / "temporary"
+    temporary.mkdir()
+    told = os.environ | {"PYTHONPATH": str(tmp_path), "TMPDIR": str(temporary)}
+    command = [sys.executable, "-m", "swallowing"]
+    with subprocess.Popen(command, env=told, stdout=subprocess.PIPE) as parent:
+        assert parent.stdout is not None
+        assert parent.stdout.readline().startswith(b"Listening")
+        parent.kill()
+    deadline = time.monotonic() + 2 * HEEDED_WITHIN
+    while any(temporary.iterdir()):
+        assert time.monotonic() < deadline
+        time.sleep(0.1)
+
+
+INTERRUPTED_AT_ITS_END = """\
+import signal, sys
+from laglab.runs.processes.child import _leave
+
+def interrupt(frame, event, _):
+    if frame.f_code.co_name == "on_interrupt":
+        sys.setprofile(None)
+        signal.raise_signal(signal.SIGINT)
+
+signal.signal(signal.SIGINT, signal.default_int_handler)
+sys.setprofile(interrupt)
+_leave()
+"""
+
+
+def test_one_that_leaves_is_not_interrupted_any_more(tmp_path: Path) -> None:
+    """A parent that is killed is found gone twice: by who tells it something and who listens."""
+    command = [sys.executable, "-c", INTERRUPTED_AT_ITS_END, "", "", str(tmp_path / "temporary")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (INTERRUPTED, "")
 
 
 def test_where_no_worker_can_be_started_nobody_waits_for_one(

@@ -25,6 +25,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from io import FileIO
 from queue import Empty, Queue
+from time import sleep
 from typing import Any, NamedTuple, NoReturn
 
 import msgspec
@@ -35,6 +36,8 @@ from laglab.runs.processes.reports import Ended, Report
 
 LAST_CHANCE = 2.0
 """[s] After this long a child that was asked to end is killed."""
+HEEDED_WITHIN = 10.0
+"""[s] A child whose parent is gone, and which goes on for so long after that, does not heed it."""
 LOOK_UP = 0.5
 """[s] How often a wait for reports looks up: not every system lets a Ctrl-C through it."""
 
@@ -152,7 +155,12 @@ def main(target: str, again: bool) -> None:
 def _leave(*_: object) -> NoReturn:
     """At once: there is nothing to end in order yet, or any more. Nor is there anything to be
     interrupted a second time, as when a parent that is gone is found gone twice."""
-    on_interrupt(lambda *_: None)
+    with suppress(KeyboardInterrupt):
+        on_interrupt(lambda *_: None)
+    _vanish()
+
+
+def _vanish() -> NoReturn:
     shutil.rmtree(sys.argv[3], ignore_errors=True)
     os._exit(INTERRUPTED)
 
@@ -180,10 +188,15 @@ def _line(source: int) -> bytes:
 
 
 def _read_on(source: int, orders: Queue[bytes]) -> None:
-    """Whatever comes; at the end our parent is gone, or wants us to go."""
+    """Whatever comes; at the end our parent is gone, or wants us to go. Then it sees to that, but
+    who is gone does not, and an `except:` of somebody's may have swallowed the interrupt."""
+    parent = os.getppid()
     while line := _line(source):
         orders.put(line)
     _interrupt()
+    sleep(HEEDED_WITHIN)
+    if os.getppid() != parent:
+        _vanish()
 
 
 def _interrupt() -> None:
