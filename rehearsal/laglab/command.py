@@ -127,6 +127,10 @@ def _exit_code(arguments: list[str] | None) -> int:
         )
     except (typer.Abort, KeyboardInterrupt):
         code = INTERRUPTED
+    except RuntimeError as error:  # of Python 3.11, where one comes while a class is made
+        if not isinstance(error.__cause__, KeyboardInterrupt):
+            raise
+        code = INTERRUPTED
     return _say("interrupted", code) if code == INTERRUPTED else code
 
 

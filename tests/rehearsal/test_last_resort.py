@@ -3,8 +3,11 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
+
+import laglab
 
 BEGUN = """
 import ctypes, os, signal, time
@@ -81,3 +84,23 @@ def test_who_heeds_signals_goes_on(then: str) -> None:
 def test_who_heeds_none_is_ended() -> None:
     done = ended(DEAF)
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "laglab: interrupted\n")
+
+
+NAMING = """
+class Named:
+    def __set_name__(self, owner, name):
+        raise KeyboardInterrupt
+
+class Axes:
+    named = Named()
+"""
+
+
+def test_an_interrupt_that_meets_a_class_in_the_making_is_no_other(tmp_path: Path) -> None:
+    """A library's, as it is loaded: Python 3.11 makes a RuntimeError of it."""
+    laglab.run("lab", {"duration": 0.1}, out=tmp_path / "run")
+    (tmp_path / "matplotlib").mkdir()
+    (tmp_path / "matplotlib" / "__init__.py").write_text(NAMING)
+    command = (sys.executable, "-m", "laglab", "figure", "run")
+    ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stderr) == (130, "laglab: interrupted\n")
