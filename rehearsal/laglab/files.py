@@ -16,12 +16,20 @@ BESIDE = ".*.new"
 """Pattern of the names of files that are being written; they stay when we are killed meanwhile."""
 
 
+def here() -> Path:
+    """The current directory. Raises PlaceError when somebody has deleted it."""
+    try:
+        return Path.cwd()
+    except FileNotFoundError as error:
+        raise PlaceError("the current directory is gone: go to one that is there") from error
+
+
 def folder_place(named: str, path: Path) -> Path:
     """The folder, made where it is not there; files can be made in it. Raises PlaceError.
 
     `named` is how the command line calls it.
     """
-    _refuse_nameless(named, path)
+    _refuse_nowhere(named, path)
     new = [each for each in (path, *path.parents) if not os.path.lexists(each)]
     try:
         path.mkdir(parents=True, exist_ok=True)
@@ -41,7 +49,7 @@ def file_place(named: str, path: Path, read: Path | None = None) -> Path:
 
     `read`: what is written is made of that one, so it is another.
     """
-    _refuse_nameless(named, path)
+    _refuse_nowhere(named, path)
     try:
         there = path.exists() or path.is_symlink()
         if path.is_dir():
@@ -57,12 +65,15 @@ def file_place(named: str, path: Path, read: Path | None = None) -> Path:
     return path
 
 
-def _refuse_nameless(named: str, path: Path) -> None:
-    """No file can have NUL in its name, and nobody can write down one that is not UTF-8."""
+def _refuse_nowhere(named: str, path: Path) -> None:
+    """No file can have NUL in its name, nobody can write down one that is not UTF-8, and nothing is
+    in a folder that is gone."""
     try:
         nameless = b"\0" in str(path).encode()
     except UnicodeEncodeError:
         nameless = True
+    if not path.is_absolute():
+        here()
     if nameless:
         raise PlaceError(f"{named} {str(path)!r}: that is no name in UTF-8: give it another")
 

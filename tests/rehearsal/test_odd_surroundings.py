@@ -244,10 +244,13 @@ def test_what_finds_no_room_is_named(
 
 
 @pytest.mark.skipif(os.name != "posix", reason="no folder is deleted under who is in it here")
-def test_a_current_directory_that_is_gone_is_told(here: Path) -> None:
+@pytest.mark.parametrize(
+    "command", [f"{' '.join(RUN)} --out $OLDPWD/run", " ".join(RUN), "scenario lab"]
+)
+def test_a_current_directory_that_is_gone_is_told(here: Path, command: str) -> None:
     (here / "gone").mkdir()
-    command = f"cd gone && rmdir ../gone && {sys.executable} -m laglab {' '.join(RUN)}"
-    done = ran("sh", "-c", f"{command} --out {here}/run")
+    gone = "cd gone && rmdir ../gone"
+    done = ran("sh", "-c", f"{gone} && {sys.executable} -m laglab {command}")
     assert done.returncode == 2
     assert a_line(done.stderr, "laglab: the current directory is gone: go to one that is there")
 

@@ -62,6 +62,14 @@ WRONG = [
     (["run", "lab", "--plant", "pty://p", "--fmi", "2"], "plant.fmi: the robot at pty://p has"),
     (["gateway", "lab", "--plant", "pty://p", "--pace", "realtime"], "pace: the robot at pty://p"),
     (["gateway", "lab", "--plant", "pty://p", "--set", "speed=2"], "speed: the robot at pty://p"),
+    (
+        ["gateway", "lab", "--plant", "pty://p", "--set", "plant.wheel_slip=0.1"],
+        "plant.wheel_slip: the robot at pty://p",
+    ),
+    (
+        ["run", "lab", "--plant", "pty://p", "--set", "plant.outputs.x=pose"],
+        "plant.outputs.x: the robot at pty://p",
+    ),
     (["gateway", "lab", "--plant", "udpin://0.0.0.0:0"], "can be reached from outside"),
     (["compare", "nowhere"], "nowhere"),
 ]

@@ -63,8 +63,13 @@ OWN: dict[str, Own] = {
     "plant.fmi": Own(int | None, "--fmi"),
 }
 """Dotted key of a scenario → its option, which says what the key says."""
-OF_A_SIMULATED_ROBOT = {"pace", "speed", "plant.fmi"}
-"""Keys that nobody reads in front of a real one."""
+OF_A_SIMULATED_ROBOT = (
+    *("pace", "speed", "plant.kind", "plant.fmi", "plant.fmu", "plant.integration"),
+    *("plant.options", "plant.parameters", "plant.inputs", "plant.outputs", "plant.start"),
+    *("plant.wheel_speed_max", "plant.motor_time_constant", "plant.wheel_radius_error"),
+    *("plant.track_error", "plant.wheel_slip"),
+)
+"""Keys, and tables, that nobody reads in front of a real one."""
 OF_SEVERAL_KEYS: dict[str, Any] = {
     "estimator": EstimatorsOption,
     "timeline": Annotated[
@@ -124,7 +129,10 @@ def _parameters(by_default: object, estimators: bool) -> Iterator[inspect.Parame
 def _before_real_robot(overrides: Overrides, address: str) -> Overrides:
     """With its own pace, which is the clock's. Raises ScenarioError: nobody would read what
     somebody asks for."""
-    if idle := sorted(overrides.keys() & OF_A_SIMULATED_ROBOT):
+    tables = tuple(f"{key}." for key in OF_A_SIMULATED_ROBOT)
+    if idle := sorted(
+        key for key in overrides if key in OF_A_SIMULATED_ROBOT or key.startswith(tables)
+    ):
         raise ScenarioError(
             f"{idle[0]}: the robot at {address} has a clock of its own, and is what it is: leave "
             "it out, or --plant"

@@ -1,11 +1,11 @@
 """``laglab scenario``."""
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from laglab.commands.on_scenario import on_scenario
+from laglab.files import here
 from laglab.scenario import Scenario
 
 
@@ -39,4 +39,4 @@ def scenario(
 
         typer.echo(explained(scenario))
     else:
-        typer.echo(scenario.to_toml(Path.cwd()), nl=False)
+        typer.echo(scenario.to_toml(here()), nl=False)
