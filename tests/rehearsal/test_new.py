@@ -88,6 +88,7 @@ def test_each_template_keeps_its_interface(
         ("class", "Python has something of that name already"),
         ("none", "Python has something of that name already"),
         ("setup", "Python has something of that name already"),
+        ("inf", "a scenario reads that as a number"),
         ("numpy", "Python has something of that name already"),
         ("delayed-ekf", "laglab has something of that name already"),
         ("polar", "laglab has something of that name already"),

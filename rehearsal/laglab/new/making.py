@@ -25,6 +25,9 @@ RUNS: Mapping[Kind, str] = {
 RUN_BY_SETUPTOOLS = "setup"
 """A module of that name is a script to it, that makes the package."""
 
+NUMBERS = ("inf", "nan")
+"""In TOML, and so behind `--set`, these words are."""
+
 
 class Made(NamedTuple):
     """What was made."""
@@ -76,6 +79,8 @@ def _module(name: str) -> str:
         raise ScenarioError(
             f"{name}: a package's name is of small letters and digits, with - or _ between them"
         )
+    if name in NUMBERS:
+        raise ScenarioError(f"{name}: a scenario reads that as a number: take another one")
     if any(name in names for names in SHIPPED.values()):
         raise ScenarioError(f"{name}: laglab has something of that name already: take another one")
     module = name.replace("-", "_")
