@@ -1,16 +1,13 @@
 """One side of a run alone: the other one is somebody else's."""
 
-from collections.abc import Iterator
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, closing
 from dataclasses import replace
 
-from laglab.interrupts import FINISHING, put_off
 from laglab.runs.clock import LoopClock
 from laglab.runs.ending import Ending
 from laglab.runs.errors import CUT_SHORT, SIDE_ERRORS
-from laglab.runs.pauses import short_pauses
+from laglab.runs.looping import looping
 from laglab.runs.robot_side import OpenRobot
-from laglab.runs.staying import staying
 from laglab_gateway import Outcome, Surroundings
 from laglab_protocol import EndReason, Listener, SettingsError
 from laglab_station import Onlooker, Station, run_station
@@ -27,7 +24,7 @@ def serve_alone(robot: OpenRobot, around: Surroundings, last: ExitStack) -> Endi
         around.warn(text)
 
     try:
-        with closing(around.recorder), _heard_until_over(last):
+        with closing(around.recorder), looping(last):
             served = robot.serve(replace(around, progress=clock, warn=warn))
     except SIDE_ERRORS as error:
         so_far = robot.so_far()
@@ -53,7 +50,7 @@ def answer_alone(
     """The station's side to the end, the onlooker closed, which tells the clock of every tick; what
     breaks is in the ending. From the end of the loop until `last` is closed an interrupt waits."""
     try:
-        with closing(onlooker), _heard_until_over(last):
+        with closing(onlooker), looping(last):
             outcome = _answered(station, listener, silence_timeout, onlooker)
     except SIDE_ERRORS as error:
         return replace(_cut_short(error, clock, list(station.warnings)), station=station.report())
@@ -64,16 +61,6 @@ def answer_alone(
         station=report,
         warnings=report.warnings,
     )
-
-
-@contextmanager
-def _heard_until_over(last: ExitStack) -> Iterator[None]:
-    """Interrupts end what is within; then they wait for `last`."""
-    try:
-        with short_pauses(), staying():
-            yield
-    finally:
-        last.enter_context(put_off(FINISHING))
 
 
 def _answered(

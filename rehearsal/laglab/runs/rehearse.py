@@ -15,7 +15,7 @@ from laglab.runs.ending import Ending
 from laglab.runs.errors import CUT_SHORT, SIDE_ERRORS
 from laglab.runs.glance import OnTick, watched
 from laglab.runs.inline import InlineLink
-from laglab.runs.pauses import short_pauses
+from laglab.runs.looping import looping, wait_for
 from laglab.runs.processes.child import LOOK_UP, Child, Inbox, Letter, started
 from laglab.runs.processes.reports import (
     Answered,
@@ -30,7 +30,6 @@ from laglab.runs.processes.reports import (
 )
 from laglab.runs.robot_side import OpenRobot, Setup, open_robot
 from laglab.runs.station_side import make_station
-from laglab.runs.staying import staying
 from laglab.runs.waiting import START
 from laglab.scenario import Scenario
 from laglab_control import Controller
@@ -77,7 +76,7 @@ def rehearse_inline(
             link = InlineLink(station, codec.receiver)
             listener = Listener(link, robot.codec.receiver)
             around = Surroundings(listener, told, progress=clock, warn=warnings.append)
-            with short_pauses(), staying():
+            with looping(setup.last):
                 served = robot.serve(around)
     except SIDE_ERRORS as error:
         begun = clock.seconds > 0 or isinstance(error, CUT_SHORT)
@@ -107,14 +106,18 @@ def rehearse_apart(
     Ctrl-C ends both in order; the outcome says so.
     """
     setup = setup or Setup()
-    key, plant_key = (None if each is None else str(each) for each in (setup.key, setup.plant_key))
+    key, plant_key = _spelled(setup.key), _spelled(setup.plant_key)
     with _gateway_url(transport) as url:
         order = Order(
             scenario.to_toml(), url, str(directory), setup.plant, key, plant_key, setup.live
         )
         inbox: Inbox = Queue()
         with started("gateway", "laglab.runs.processes.sides:robot_side", order, inbox) as gateway:
-            return _Rehearsal(gateway, inbox, scenario, key, progress).follow()
+            return _Rehearsal(gateway, inbox, scenario, setup, progress).follow()
+
+
+def _spelled(path: Path | None) -> str | None:
+    return None if path is None else str(path)
 
 
 @contextmanager
@@ -140,13 +143,13 @@ class _Rehearsal:
         gateway: Child,
         inbox: Inbox,
         scenario: Scenario,
-        key: str | None,
+        setup: Setup,
         progress: OnTick,
     ) -> None:
         self._gateway = gateway
         self._inbox = inbox
         self._scenario = scenario
-        self._key = key
+        self._setup = setup
         self._progress = progress
         self._ending = Ending(begun=False)
         self._finished = self._over = self._station_over = False
@@ -157,13 +160,14 @@ class _Rehearsal:
         address = self._first_address()
         if address is None:
             return self._summed_up()
-        order = Order(self._scenario.to_toml(), far_end(address), key=self._key)
+        order = Order(self._scenario.to_toml(), far_end(address), key=_spelled(self._setup.key))
         with started("controller", "laglab.runs.processes.sides:station_side", order, self._inbox):
             try:
                 self._read_on(self._scenario.silence_timeout + NOTICE_SECONDS)
             except KeyboardInterrupt:
                 self._gateway.stop()
                 self._read_on(GOODBYE_SECONDS if self._ending.begun else STILL_STARTING)
+            wait_for(self._setup.last)
         return self._summed_up()
 
     def _first_address(self) -> str | None:

@@ -77,6 +77,8 @@ class Setup:
     """The file of the key that signs every frame on the real robot's own link."""
     live: str | None = None
     """How the loop calls the live page, if there is one."""
+    last: ExitStack | None = None
+    """From the end of the loop until this is closed an interrupt waits."""
 
     def check(self) -> None:
         """What can be known to be wrong before anything runs.

@@ -19,7 +19,6 @@ from laglab.commands.runs.leaving import Wishes, leaving
 from laglab.commands.runs.live import LiveOption, OpenOption
 from laglab.errors import ScenarioError
 from laglab.extras import REHEARSING, require
-from laglab.interrupts import FINISHING, put_off
 from laglab.progress import progress_of
 from laglab.results.complete import Manner
 from laglab.runs.plant import check_plant
@@ -67,9 +66,8 @@ def run(
     manner = Manner("both", transport, plant or scenario.plant.called)
     with leaving(scenario, manner, wishes) as left:
         with progress_of(scenario) as told:
-            setup = replace(setup, live=left.line)
+            setup = replace(setup, live=left.line, last=left.last)
             ending = run_into(left.directory, scenario, transport, told, setup)
-            left.last.enter_context(put_off(FINISHING))
         code = left.conclude(ending)
     raise typer.Exit(code)
 
