@@ -1,8 +1,11 @@
 """What a person at the station must not overlook."""
 
-from laglab_protocol import MAV_SEVERITY_EMERGENCY, MAV_SEVERITY_ERROR, Statustext
-
-BEGUN_AGAIN = "the robot has begun again"
+from laglab_protocol import (
+    BEGUN_AGAIN,
+    MAV_SEVERITY_EMERGENCY,
+    MAV_SEVERITY_ERROR,
+    Statustext,
+)
 
 MOST_TOLD = 20
 """At most so many texts of the robot's are kept: it may say whatever it likes."""

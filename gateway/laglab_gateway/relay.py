@@ -22,6 +22,7 @@ from laglab_gateway.services import RobotState, Services
 from laglab_gateway.side import RobotSide
 from laglab_gateway.stopping import Stopping
 from laglab_protocol import (
+    BEGUN_AGAIN,
     MAV_SEVERITY_ERROR,
     ROBOT_COMPONENT,
     ROBOT_SYSTEM,
@@ -155,7 +156,7 @@ class Relay(RobotSide):
 
     def _meet_anew(self, tick: int) -> None:
         """What was on its way to the robot, or from it, belongs to its earlier ticks."""
-        self.announce("the robot has begun again", MAV_SEVERITY_ERROR)
+        self.announce(BEGUN_AGAIN, MAV_SEVERITY_ERROR)
         self.first, self._in_force = tick - (self.elapsed + 1), tick - 1
         self._answer.through = tick - 1
         self._commands.clear()

@@ -124,7 +124,7 @@ from laglab_protocol.plans import Assembly, Planned, Speeds, frames_of
 from laglab_protocol.playout import Playout
 from laglab_protocol.ration import LEAST_BYTES, Ration
 from laglab_protocol.refusals import Refusals
-from laglab_protocol.restart import Restart
+from laglab_protocol.restart import BEGUN_AGAIN, Restart
 from laglab_protocol.settings import TELLS_WITHIN, Parties, differences, refuse_other_sample_time
 from laglab_protocol.signing.keys import Codec, make_key, read_key, refuse_open_door
 from laglab_protocol.signing.signature import EVERY_MESSAGE, Signer, Verifier, signing_time
@@ -133,6 +133,7 @@ from laglab_protocol.timing import Durations, Quantiles
 from laglab_protocol.tlog import read_tlog, tlog_record
 
 __all__ = [
+    "BEGUN_AGAIN",
     "BITS_PER_BYTE",
     "EVERY_MESSAGE",
     "LAYOUT_OF_ID",

@@ -1,5 +1,8 @@
 """Whether a robot has begun again, or only its old ticks come late."""
 
+BEGUN_AGAIN = "the robot has begun again"
+"""Who finds it says so: in the same words, so that nobody is told twice."""
+
 SAME = 4
 """So often in a row no link brings the same old tick by itself: a robot repeats it."""
 OLD = 20
