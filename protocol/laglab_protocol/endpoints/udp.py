@@ -70,6 +70,8 @@ class UdpIn(_Udp):
             raise _cannot("bind", self.name, error) from error
         self.name = _spelled("udpin", self._socket.getsockname())
         self._apart: socket.socket | None = None
+        self._may_hold_older = False
+        """Whether what the peer sent before it had a queue may still wait among everybody's."""
         self._next_look = 0.0
         self._strangers = Ration(STRANGERS_A_SECOND, STRANGERS_DATAGRAM, LEAST_BYTES)
         self._ready = selectors.DefaultSelector()
@@ -91,7 +93,8 @@ class UdpIn(_Udp):
 
     @property
     def _may_hear_strangers(self) -> bool:
-        return self._apart is None or self._strangers.left(monotonic()) > 0
+        alone = self._apart is None
+        return alone or self._may_hold_older or self._strangers.left(monotonic()) > 0
 
     def send(self, data: bytes, to: Address | None = None) -> None:
         address: Any = to or self.peer
@@ -109,10 +112,22 @@ class UdpIn(_Udp):
         return super().receive(timeout)
 
     def _read(self) -> bytes | None:
+        if self._may_hold_older and (data := self._read_older()) is not None:
+            return data
         if self._apart is not None:
             data = self._read_from(self._apart, LARGEST_HEARD)
             if data is not None or not self._is_strangers_turn():
                 return data
+        return self._read_of_all()
+
+    def _read_older(self) -> bytes | None:
+        """What came before the peer had its queue, in the order in which it came: later it would
+        pass for a repetition. Strangers among it get no more than their ration."""
+        data = self._read_of_all() if self._strangers.left(monotonic()) > 0 else None
+        self._may_hold_older = data is not None
+        return data
+
+    def _read_of_all(self) -> bytes | None:
         data = self._read_from(self._socket, STRANGERS_DATAGRAM)
         if data is not None and self.sender != self.peer:
             self._strangers.take(len(data))
@@ -138,6 +153,7 @@ class UdpIn(_Udp):
             self._end_queue()
             self.peer = self.sender
             self._apart = queue_for(self.peer, self._socket)
+            self._may_hold_older = self._apart is not None
 
     def leave_peer(self) -> None:
         self._end_queue()
@@ -145,6 +161,7 @@ class UdpIn(_Udp):
 
     def _end_queue(self) -> None:
         self._watch(set())
+        self._may_hold_older = False
         if self._apart is not None:
             self._apart.close()
             self._apart = None

@@ -68,6 +68,21 @@ def test_what_came_before_the_peer_was_accepted_is_there_at_once(stack: ExitStac
     assert [robot.receive(0.0) for _ in range(20)] == [*(b"%d" % k for k in range(1, 20)), b""]
 
 
+def test_what_came_before_the_peer_was_accepted_comes_before_what_it_sends_then(
+    stack: ExitStack,
+) -> None:
+    robot, station = udp_pair(stack)
+    stranger = stack.enter_context(open_endpoint(station.name))
+    for number in range(4):
+        station.send(b"%d" % number)
+        stranger.send(b"strange")
+    robot.receive(WAIT)
+    robot.accept_peer()
+    station.send(b"4")
+    heard = [robot.receive(0.02) for _ in range(9)]
+    assert [each for each in heard if each != b"strange"] == [b"1", b"2", b"3", b"4", b""]
+
+
 def test_a_later_accepted_peer_replaces_the_first(stack: ExitStack) -> None:
     robot, station = udp_pair(stack)
     again = stack.enter_context(open_endpoint(station.name))
