@@ -196,6 +196,14 @@ def test_who_measures_is_not_disturbed_by_another() -> None:
     assert echo.is_for(asked(1), 10**9)
 
 
+def test_a_measurer_begins_once_though_it_calls_before_it_measures() -> None:
+    echo, last = Answerer(FILLER), 2**32 - 1
+    assert [echo.hear(asked(session), 0) for session in (last, last, 0, 0, 9)] == [
+        *(True, False, False, False),
+        True,  # somebody else, whose turn it is
+    ]
+
+
 def test_arrivals_of_which_nothing_tells_are_estimated() -> None:
     rng = np.random.default_rng(1)
     lost = rng.random((2, 9000)) < 0.3

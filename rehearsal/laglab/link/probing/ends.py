@@ -24,6 +24,11 @@ def following(session: int) -> int:
     return (session + 1) % SESSIONS
 
 
+def _sessions_of(end: "ProbeEnd") -> tuple[int, int]:
+    """Those of whoever measures: the one that is, and the one that may follow."""
+    return end.session, following(end.session)
+
+
 class ProbeEnd:
     """Numbers its probes, and tells in each what came: every arrival once in each place of `came`,
     so that no short gap in what is told hides it."""
@@ -73,12 +78,13 @@ class Answerer:
         next number, which is the same measurer's."""
         if self.end is None or self._is_over(self.end, now_ns):
             return True
-        return probe.session in (self.end.session, following(self.end.session))
+        return probe.session in _sessions_of(self.end)
 
     def hear(self, probe: Probe, now_ns: int) -> bool:
-        """Take one that is answered; whether a session begins with it."""
-        begins = self.end is None or self.end.session != probe.session
-        if self.end is None or begins:
+        """Take one that is answered; whether a measurer begins with it, who calls in one session
+        and measures in the next."""
+        begins = self.end is None or probe.session not in _sessions_of(self.end)
+        if self.end is None or self.end.session != probe.session:
             interval_us = max(probe.interval_us, SHORTEST)
             self.end, self._due_ns = ProbeEnd(probe.session, interval_us, self._filler), now_ns
         self.end.hear(probe, now_ns)
