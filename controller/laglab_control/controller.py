@@ -81,7 +81,7 @@ class Controller:
         if isinstance(estimator, Brought) and not estimator.is_watchable:
             raise PluginError(
                 f"estimator.guard: {estimator.name} has no method innovation(state), by which a "
-                "guard sees what is wild: leave the guard out"
+                "guard sees what is wild: write one, or say estimator.guard = false"
             )
         if not estimator.is_watchable:
             return None

@@ -82,6 +82,7 @@ def test_a_guard_needs_to_see_how_wild_a_measurement_is(ended: Ended, refused: R
     assert ended(*guarded, "--estimator", "mine:Watchable").code == 0
     line = refused(*guarded, "--estimator", "mine:Wide")
     assert "estimator.guard: mine:Wide has no method innovation(state)" in line
+    assert "estimator.guard = false" in line
 
 
 def test_who_runs_it_as_a_script_has_the_current_directory_too(brought: Path) -> None:
