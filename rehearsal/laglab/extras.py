@@ -1,5 +1,6 @@
 """What not every machine has installed: each side alone needs less than the whole rig."""
 
+import sys
 from importlib.util import find_spec
 from typing import NamedTuple
 
@@ -33,5 +34,10 @@ def require(need: Need) -> None:
         if find_spec(module) is None:
             raise MissingExtraError(
                 f"{module} is not installed here: pip install 'laglab[{need.extra}]' brings it "
-                f"(in a clone of laglab, pip install '.[{need.extra}]')"
+                f"(in a clone of laglab, pip install '.[{need.extra}]')" + _by_another_pip()
             )
+
+
+def _by_another_pip() -> str:
+    """How to install into an environment that has no pip: what is called so is another's."""
+    return "" if find_spec("pip") else f"; here is no pip: take pip --python {sys.executable}"

@@ -9,6 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from laglab import extras
+from laglab.errors import MissingExtraError
+
 OPTIONS = ("lab", "--duration", "0.5", "--endpoint")
 
 
@@ -61,6 +64,16 @@ def test_no_command_loads_what_it_does_not_need() -> None:
     script = [sys.executable, "-c", f"import sys, laglab.command; {asked}"]
     loaded = subprocess.run(script, capture_output=True, text=True, check=True)
     assert loaded.stdout == "[]\n"
+
+
+@pytest.mark.parametrize("missing", [{"bokeh"}, {"bokeh", "pip"}])
+def test_where_no_pip_is_installed_another_one_is_told_where_to(
+    missing: set[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(extras, "find_spec", lambda name: None if name in missing else name)
+    with pytest.raises(MissingExtraError, match=r"pip install 'laglab\[see\]'") as refused:
+        extras.require(extras.SEEING)
+    assert (f"pip --python {sys.executable}" in str(refused.value)) == ("pip" in missing)
 
 
 @pytest.mark.slow
