@@ -168,6 +168,14 @@ def test_what_is_measured_is_not_called_true() -> None:
     assert names(panel(draw_runs([run, run]), "error")) == []
 
 
+def test_rounding_is_drawn_as_no_error() -> None:
+    figure = laglab.run("fig6", {"duration": 2.0, "estimator.compare": ["delayed-ekf"]}).figure()
+    figure.draw_without_rendering()
+    for component in "xyθ":
+        axes = panel(figure, f"shadow {component}")
+        assert axes.yaxis.get_offset_text().get_text() == "", "it would lie over the legend"
+
+
 @pytest.mark.parametrize("width", WIDTHS)
 def test_shadows_come_beside_the_runs_own_panels(shadowed: laglab.Run, width: Width) -> None:
     figure = shadowed.figure(width)

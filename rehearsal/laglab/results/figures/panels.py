@@ -26,6 +26,8 @@ ROOM = 1.2
 """How many times as large as what is in it a panel is."""
 MOST_SHOWN = 1e9
 """An estimate beyond that is of no use, nor is an axis that long."""
+ROUNDING = 1e-9
+"""An error below that is none, and no axis is as short."""
 MARKERS = 9
 """How many are on a line, so that it is known in grey too."""
 
@@ -119,7 +121,7 @@ def symmetric(axes: Axes, errors: list[Array], two_sigma: Array) -> None:
         float(known.max(initial=0.0)),
         float(np.quantile(claims, 0.95)) if len(claims) else 0.0,
     )
-    half = ROOM * min(largest, MOST_SHOWN) or 1e-3
+    half = ROOM * min(largest, MOST_SHOWN) if largest > ROUNDING else 1e-3
     axes.set_ylim(-half, half)
 
 
