@@ -107,7 +107,9 @@ def _loaded(entry: EntryPoint, name: str) -> Maker:
     except KeyboardInterrupt:
         raise
     except BaseException as error:  # it is a stranger's
-        raise PluginError(f"{name}: {one_line(error)}") from error
+        file = module.endswith(".py")
+        hint = f": name the module, {module.removesuffix('.py')}:{attribute}" if file else ""
+        raise PluginError(f"{name}: {one_line(error)}{hint}") from error
     if not callable(found):
         raise PluginError(f"{name}: {entry.value} is no class, but {shown(found)}")
     return found

@@ -190,6 +190,7 @@ def test_a_comparison_that_fails_costs_the_run_nothing(brought: Path, ended: End
         ("--estimator", "mine:NoModel", "mine:NoModel cannot be made: TypeError"),
         ("--estimator", "mine:Nobody", "mine:Nobody: AttributeError"),
         ("--estimator", "nowhere:Nobody", "nowhere:Nobody: ModuleNotFoundError"),
+        ("--estimator", "mine.py:Wide", "name the module, mine:Wide"),
         ("--estimator", "mine:np", "mine:np: mine:np is no class"),
         ("--estimator", "nobody", "must be one of raw, ekf"),
         ("--law", "mine:NoDrive", "mine:NoDrive has no method drive(pose, time, memory)"),
