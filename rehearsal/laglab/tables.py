@@ -15,6 +15,11 @@ def say(text: str) -> None:
     terminal(stderr=True).print(text, highlight=False, soft_wrap=True)
 
 
+def counted(count: int, what: str) -> str:
+    """So many of them; `what` is the word for one, which takes an s."""
+    return f"{count} {what}" + ("" if count == 1 else "s")
+
+
 def plain_table(*headings: str, title: str = "", caption: str = "", headed: bool = True) -> Table:
     """Without lines: title and caption at the left, headings, a row a line. Numbers are put at the
     right by who adds their columns."""

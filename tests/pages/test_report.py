@@ -55,7 +55,7 @@ def seen(tab: Tab) -> np.ndarray:
 def test_it_tells_of_the_run(tab: Tab, page: Path, radio: Run) -> None:
     opened(tab, page, [radio])
     assert tab.text(".verdict").strip() == radio.summary.verdict
-    for name, cell in summary_rows(radio.summary).items():
+    for name, cell in summary_rows(radio).items():
         assert name in tab.text("#summary")
         assert cell in tab.text("#summary")
     assert 'name = "lab-radio"' in tab.text("pre")

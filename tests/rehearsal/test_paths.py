@@ -50,7 +50,7 @@ def test_distances_are_those_over_the_second_half(circling: laglab.Run) -> None:
     assert following.rms == pytest.approx(np.sqrt(np.mean(distance**2)))
     assert following.largest == pytest.approx(distance.max())
     assert circling.summary.final.rho == pytest.approx(distance[-1])
-    assert summary_rows(circling.summary)["distance to the path"].startswith("RMS 0.0")
+    assert summary_rows(circling)["distance to the path"].startswith("RMS 0.0")
 
 
 def test_a_robot_that_is_slower_than_its_path_does_not_follow_it() -> None:

@@ -158,7 +158,7 @@ def test_a_command_whose_plan_never_came_whole_has_no_delay() -> None:
     assert late.sum() > 50
     assert link_view(done).directions["command"].delay.max() == done.scenario.link.n
     told = io.StringIO()
-    Console(file=told, width=120).print(results_table(done.summary))
+    Console(file=told, width=120).print(results_table(done))
     assert re.search(r"arrived, 10.0 ticks late \(10 to 10\); \d+ frames lost *\n", told.getvalue())
 
 

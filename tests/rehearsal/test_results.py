@@ -149,6 +149,15 @@ def test_a_report_is_left_where_one_is_asked_for(ended: Ended, folder: Path) -> 
     assert "fig4" in (folder / "run" / "report.html").read_text("utf-8")
 
 
+@pytest.mark.parametrize("noise", [True, False])
+def test_the_table_says_when_there_is_no_noise(ended: Ended, folder: Path, noise: bool) -> None:
+    """Else who reads of errors of 1e-16 m wonders."""
+    short = ("--duration", "0.1", "--transport", "inline", "--out", str(folder / "run"))
+    done = ended("run", "fig4", *short, "--noise" if noise else "--no-noise")
+    assert done.code == 0, done.err
+    assert ("without noise" in done.out) is not noise
+
+
 def test_where_the_last_measurements_are_still_on_their_way_the_others_tell() -> None:
     ticks, axes = 300, ("x", "y", "theta")
     trace = {"time": np.arange(ticks) * 0.01} | {axis: np.full(ticks, np.nan) for axis in axes}

@@ -41,7 +41,7 @@ def test_the_command_leaves_table_and_picture(
     code, out, _ = ended("rivals", "lab", *options, *chosen)
     assert code == 0
     lines = out.splitlines()
-    assert lines[0].split() == ["lab,", "n", "=", "10,", "m", "=", "20,", "1", "runs", "each"]
+    assert lines[0].split() == ["lab,", "n", "=", "10,", "m", "=", "20,", "1", "run", "each"]
     assert "settled [s] RMS [m] driven [m]" in lines[1]
     rows = [line.split() for line in lines if line.endswith(tuple("0123456789"))]
     raw, plans, guarded, *_ = (row[-5:] for row in rows)

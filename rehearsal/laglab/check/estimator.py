@@ -86,10 +86,13 @@ def interface(subject: Subject) -> str:
     record = drive(MODEL, TICKS, seed=1)
     states = _run(subject.estimator, record, _late(record, 3))
     _try_the_optional(subject.estimator, states[-1], record)
+    unwatched = ""
     if subject.estimator.is_watchable:
         _run(Guard(subject.estimator, MODEL), record, _late(record, 3))
+    else:
+        unwatched = "; without innovation: run it with estimator.guard = false"
     size = len(states[-1].x) if states[-1].x is not None else 0
-    return f"a state of {size} components, followed over {TICKS} ticks"
+    return f"a state of {size} components, followed over {TICKS} ticks{unwatched}"
 
 
 def _try_the_optional(estimator: Estimator[State], state: State, record: Record) -> None:

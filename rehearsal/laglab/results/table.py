@@ -1,7 +1,10 @@
 """A run's numbers, for reading."""
 
+from __future__ import annotations
+
 import sys
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 from rich.table import Table
 
@@ -10,28 +13,32 @@ from laglab.tables import plain_table
 from laglab_gateway import DirectionReport, FateKind, LinkReport, TimingReport
 from laglab_station import StationReport
 
+if TYPE_CHECKING:
+    from laglab.results.run import Run
+
 SHOWN = 5
 """Alarms."""
 
 
-def results_table(summary: Summary) -> Table:
+def results_table(run: Run) -> Table:
     """Name and value, a row each."""
     table = plain_table(headed=False)
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold")
-    for name, value in summary_rows(summary).items():
+    for name, value in summary_rows(run).items():
         table.add_row(name, value)
     return table
 
 
-def summary_rows(summary: Summary) -> dict[str, str]:
+def summary_rows(run: Run) -> dict[str, str]:
     """Name → value, as far as there is something to say."""
+    summary = run.summary
     seen = " (measured)" if summary.pose == "measured" else ""
     late = " (measured, last second)" if seen else ""
     estimated = summary.compare or {summary.estimator: summary.rms_error}
     final, following = summary.final, summary.following
     return {
-        "scenario": f"{summary.scenario} (seed {summary.seed}, {summary.transport})",
+        "scenario": f"{summary.scenario} ({', '.join(_circumstances(run))})",
         "estimator": summary.estimator,
         **({} if summary.law in ("polar", "unknown") else {"law": summary.law}),
         "delays n, m": f"{summary.n} and {summary.m} ticks",
@@ -45,6 +52,13 @@ def summary_rows(summary: Summary) -> dict[str, str]:
         **(_station_rows(summary.station) if summary.station else {}),
         "speed": _speed(summary),
     }
+
+
+def _circumstances(run: Run) -> list[str]:
+    """Without noise, errors are those of rounding: who wonders at them is to know why."""
+    simulated = run.summary.side != "station" and run.summary.pose != "measured"
+    silent = ["without noise"] if simulated and not run.scenario.noise else []
+    return [f"seed {run.summary.seed}", *silent, run.summary.transport]
 
 
 def _number(value: float | None) -> str:

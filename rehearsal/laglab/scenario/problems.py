@@ -5,7 +5,7 @@ from difflib import get_close_matches
 
 from pydantic import ValidationError
 
-from laglab.scenario.keys import ANY, keys, rows
+from laglab.scenario.keys import ANY, NO_UNIT, keys, rows
 from laglab.scenario.model import Scenario
 from laglab_gateway.values import wording
 
@@ -20,7 +20,13 @@ def first_problem(error: ValidationError) -> str:
     problem = error.errors()[0]
     place = _place(problem["loc"])
     text = _unknown(place) if problem["type"] in UNKNOWN else wording(problem)
+    if _unit(place) == "ticks":
+        text = text.replace("a whole number", "a whole number of ticks")
     return f"{place}: {text}" if place else text
+
+
+def _unit(place: str) -> str:
+    return next((row.key.unit for row in rows() if row.place == _pattern(place)), NO_UNIT)
 
 
 def _place(location: Location) -> str:

@@ -83,6 +83,9 @@ def test_a_guard_needs_to_see_how_wild_a_measurement_is(ended: Ended, refused: R
     line = refused(*guarded, "--estimator", "mine:Wide")
     assert "estimator.guard: mine:Wide has no method innovation(state)" in line
     assert "estimator.guard = false" in line
+    checked = ended("check", "mine:Wide")
+    assert (checked.code, "estimator.guard = false" in checked.out) == (0, True)
+    assert "estimator.guard" not in ended("check", "mine:Watchable").out
 
 
 def test_who_runs_it_as_a_script_has_the_current_directory_too(brought: Path) -> None:

@@ -71,7 +71,7 @@ def report_on(run: Run) -> None:
 
 def _show(run: Run) -> None:
     """Table, warnings, verdict and place."""
-    terminal().print(results_table(run.summary))
+    terminal().print(results_table(run))
     for warning in warnings(run.summary):
         say(f"warning: {warning}")
     print(run.summary.verdict)

@@ -31,7 +31,7 @@ from laglab.studies.rivals import (
     scores,
     trials,
 )
-from laglab.tables import terminal
+from laglab.tables import counted, terminal
 
 
 @partial(on_scenario, by_default="lab", estimators=False)
@@ -62,7 +62,7 @@ def rivals(
     runs = outcomes(jobs, workers)
     got = scores(list(tracked(runs, len(jobs), "rivals", "run")))
     n, m = scenario.link.command_delay, scenario.link.measurement_delay
-    title = f"{scenario.name}, n = {n}, m = {m}, {seeds} runs each"
+    title = f"{scenario.name}, n = {n}, m = {m}, {counted(seeds, 'run')} each"
     terminal().print(rivals_table(title, got, links, strategies))
     save(draw_rivals(title, got, links, strategies, width), out)
     print(f"picture in {out}")

@@ -37,7 +37,7 @@ def _html(runs: Sequence[Run], most: int) -> str:
     page = Page(
         title=" and ".join(names) if len(runs) > 1 else title(runs[0]),
         scripts=[text_of(HERE, "player.js")],
-        rows=_compared([run.summary for run in runs]),
+        rows=_compared(runs),
         duration=max(float(panel.tables.ticks["time"][-1]) for panel in panels),
     )
     return html(page, panels)
@@ -81,8 +81,8 @@ def _origin(summary: Summary, drawn: int) -> str:
     )
 
 
-def _compared(summaries: Sequence[Summary]) -> list[tuple[str, list[str]]]:
+def _compared(runs: Sequence[Run]) -> list[tuple[str, list[str]]]:
     """A row for each number of any of them, a cell for each run."""
-    tables = [summary_rows(summary) for summary in summaries]
+    tables = [summary_rows(run) for run in runs]
     names = dict.fromkeys(name for table in tables for name in table)
     return [(name, [table.get(name, "") for table in tables]) for name in names]

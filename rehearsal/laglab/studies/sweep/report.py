@@ -7,6 +7,7 @@ import pyarrow.compute as pc
 from laglab.studies.sweep.folder import Folder
 from laglab.studies.sweep.study import Study
 from laglab.studies.sweep.work import Work
+from laglab.tables import counted
 
 MOST_NAMED = 3
 
@@ -19,8 +20,10 @@ def summary(study: Study, folder: Folder, work: Work) -> str:
         converged += pc.sum(table["converged"]).as_py()
         diverged += table.num_rows - table["diverged_tick"].null_count
     share = f"{converged / runs:.1%}" if runs else "none"
-    many = "1 run" if runs == 1 else f"{runs} runs"
-    lines = [f"{study.name}: {many}, {converged} converged ({share}), {diverged} diverged"]
+    lines = [
+        f"{study.name}: {counted(runs, 'run')}, {converged} converged ({share}), "
+        f"{diverged} diverged"
+    ]
     if kept := runs - work.runs:
         lines.append(f"{kept} of them had been made before")
     lines += [f"{count} made {way}" for way, count in work.ways.most_common()]

@@ -13,7 +13,7 @@ from rich.table import Table
 from laglab.studies.judged import LOOKED_AT_AFTER
 from laglab.studies.shares import draw_shares
 from laglab.studies.trust.trials import Pair
-from laglab.tables import plain_table
+from laglab.tables import counted, plain_table
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -63,7 +63,7 @@ def trust_table(of: Scores, stations: Sequence[str], seeds: int) -> Table:
     """Of each condition how many runs converged, a column a station; and of the first station the
     error, the NEES and the alarms."""
     table = plain_table(
-        title=f"converged, of {seeds} runs each",
+        title=f"converged, of {counted(seeds, 'run')} each",
         caption=f"of {stations[0]}: root mean square error of the position [m];\n"
         "NEES (3 if its claims are true); runs with an alarm; of these, how many\n"
         f"were within {FOUND:g} m of the robot {LOOKED_AT_AFTER:g} s later",
