@@ -75,7 +75,7 @@ ESTIMATORS: Mapping[str, EstimatorKind] = {
         learner=lambda model: CalibratingEkf(model, WheelScales(model.track, 0.1, 0.1)),
     ),
     "calibrating-ekf": EstimatorKind(
-        "delayed-ekf that learns how far each wheel leads, too: for worn robots; less exact on others",
+        "delayed-ekf that learns how far each wheel leads: for worn robots, less exact on others",
         lambda model: CalibratingEkf(model, WheelScales(model.track)),
     ),
 }
