@@ -108,6 +108,23 @@ def test_mat_reads_back_and_says_its_units(exported: Exported, a_run: Run) -> No
     assert read["scenario"] == a_run.scenario.to_toml()
 
 
+def test_a_filter_may_be_called_anything_in_a_mat_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    """MATLAB's names are ASCII and short: none is refused, and none takes another's place."""
+    long = "a_filter_whose_name_is_much_longer_than_matlab_lets_a_name_be"
+    kinds = [f"{long}:One", f"{long}:Two", "mine:Schätzer", "mine:S_a", "mine_S:a"]
+    for kind in kinds:
+        module, _, name = kind.partition(":")
+        with Path(f"{module}.py").open("a", encoding="utf-8") as file:
+            file.write(f"from laglab_control.estimators.paper.ekf import Ekf as {name}\n")
+    monkeypatch.syspath_prepend(Path.cwd())
+    run = laglab.run("lab", {"duration": 0.1, "estimator.compare": kinds})
+    read = scipy.io.loadmat(export(run, "mat"), squeeze_me=True, struct_as_record=False)
+    ticks, units = read["ticks"]._fieldnames, read["units"].ticks._fieldnames
+    assert ticks == units
+    assert len(ticks) == len(tick_columns(kinds))
+    assert {"x_mine_Sch_tzer", "x_mine_S_a", "x_mine_S_a_2"} < set(ticks)
+
+
 @pytest.mark.parametrize("name", FORMATS)
 def test_the_same_run_gives_the_same_bytes(
     exported: Exported, name: str, a_run: Run, tmp_path: Path
