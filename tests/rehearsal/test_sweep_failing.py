@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -27,6 +28,14 @@ def test_a_job_that_kills_whoever_does_it_is_given_up() -> None:
         with pytest.raises(RunError, match="exit code 7 and no word, three times at the same job"):
             deadly.result(40)
         assert harmless.result(20) == 3
+
+
+def test_an_executor_that_is_shut_down_is_told_in_a_line() -> None:
+    study = lab.Study(lab.load("lab"), [1], {"duration": [0.1]})
+    with ThreadPoolExecutor(1) as over:
+        pass
+    with pytest.raises(RunError, match="whoever was to do the rest failed or is gone"):
+        lab.sweep(study, executor=over)
 
 
 @pytest.mark.slow

@@ -161,7 +161,7 @@ def as_done(
     done: Queue[tuple[Job, Future[Answer]]] = Queue()
     underway = 0
     for job in jobs:
-        future = executor.submit(function, job)
+        future = _submitted(executor, function, job)
         future.add_done_callback(lambda future, job=job: done.put((job, future)))  # type: ignore[misc]
         underway += 1
         if underway == ahead:
@@ -169,6 +169,16 @@ def as_done(
             underway -= 1
     for _ in range(underway):
         yield _first(done)
+
+
+def _submitted(executor: Executor, function: Callable[[Job], Answer], job: Job) -> "Future[Answer]":
+    """An executor that is shut down or broken says so here already: it is told with the answers."""
+    try:
+        return executor.submit(function, job)
+    except Exception as error:  # whatever an executor may say
+        refused: Future[Answer] = Future()
+        refused.set_exception(error)
+        return refused
 
 
 def _first(done: "Queue[tuple[Job, Future[Answer]]]") -> "tuple[Job, Future[Answer]]":
