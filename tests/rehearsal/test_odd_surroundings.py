@@ -5,6 +5,7 @@ import re
 import shutil
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -175,11 +176,26 @@ def test_a_run_whose_figure_cannot_be_drawn_has_a_verdict(here: Path, capsys: Ca
         {"seeds": range(-3, 3)},
         {"seeds": [1], "scenario": "lab"},
         {"seeds": [1], "grid": {"link.command_delay": np.array([])}},
+        {"seeds": 5},
+        {"seeds": [1], "grid": {"link.command_delay": 5}},
     ],
 )
 def test_a_study_that_cannot_be_is_refused_in_python_too(told: Mapping[str, Any]) -> None:
     with pytest.raises(StudyError):
         laglab.Study(**{"scenario": laglab.load("lab"), **told})
+
+
+def test_a_text_is_no_list_of_its_letters() -> None:
+    with pytest.raises(StudyError, match=r"grid: estimator.kind: must be a list of values, not 'p"):
+        laglab.Study(laglab.load("lab"), [1], {"estimator.kind": "popf"})
+
+
+def test_a_grid_with_many_values_is_soon_known() -> None:
+    """In half a minute at most, though each is held against all others."""
+    started = time.monotonic()
+    study = laglab.Study(laglab.load("lab"), [1], {"law.gamma": range(1, 100_001)})
+    assert study.runs == 100_000
+    assert time.monotonic() - started < 30
 
 
 def test_numbers_of_numpy_are_numbers() -> None:

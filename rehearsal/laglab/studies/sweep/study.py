@@ -3,11 +3,13 @@
 import hashlib
 import json
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import islice, product
 from pathlib import Path
+from typing import Any
 
 from laglab.errors import StudyError
 from laglab.scenario import Scenario, changed
@@ -139,7 +141,7 @@ class Study:
 
 def _seeds(seeds: Sequence[int]) -> Sequence[int]:
     """Each whole, 0 or more and below MOST_SEED. Raises: StudyError."""
-    kept = seeds if isinstance(seeds, range) else tuple(of_python(list(seeds)))
+    kept = seeds if isinstance(seeds, range) else tuple(_listed("seeds", seeds))
     ends = {kept[0], kept[-1]} if isinstance(kept, range) and kept else kept
     for seed in ends:
         if type(seed) is not int or not 0 <= seed < MOST_SEED:
@@ -152,7 +154,7 @@ def _axis(key: str, values: Sequence[object]) -> tuple[object, ...]:
 
     Raises: StudyError.
     """
-    values = of_python(list(values))
+    values = _listed(f"grid: {key}", values)
     if not values:
         raise StudyError(f"grid: {key}: must have a value at least, not []")
     kinds = {_kind(value) for value in values}
@@ -160,10 +162,20 @@ def _axis(key: str, values: Sequence[object]) -> tuple[object, ...]:
         values, kinds = [float(value) for value in values], {float}  # type: ignore[arg-type]
     if len(kinds) > 1:
         raise StudyError(f"grid: {key}: must have values of one kind, not {list(values)}")
-    told = [spelled(value) for value in values]
-    if twice := next((text for text in told if told.count(text) > 1), None):
+    times = Counter(spelled(value) for value in values)
+    if twice := next((text for text in times if times[text] > 1), None):
         raise StudyError(f"grid: {key}: must have each value once, not {twice} again")
     return tuple(values)
+
+
+def _listed(key: str, values: object) -> list[Any]:
+    """Of Python's own kinds. Raises: StudyError, also for a text: nobody means its letters."""
+    try:
+        if not isinstance(values, str | bytes):
+            return of_python(list(values))  # type: ignore[call-overload, no-any-return]
+    except TypeError:
+        pass
+    raise StudyError(f"{key}: must be a list of values, not {values!r}")
 
 
 def _kind(value: object) -> type:
