@@ -159,7 +159,7 @@ def _axis(key: str, values: Sequence[object]) -> tuple[object, ...]:
         raise StudyError(f"grid: {key}: must have a value at least, not []")
     kinds = {_kind(value) for value in values}
     if kinds == {int, float}:
-        values, kinds = [float(value) for value in values], {float}  # type: ignore[arg-type]
+        values, kinds = [float(value) for value in values], {float}
     if len(kinds) > 1:
         raise StudyError(f"grid: {key}: must have values of one kind, not {list(values)}")
     times = Counter(spelled(value) for value in values)
