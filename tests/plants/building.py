@@ -64,9 +64,10 @@ def rover(
     platform: str = host_platform().fmi2_folder,
     resources: Sequence[str] = ("gain.txt",),
     names: Mapping[str, str] = MappingProxyType({}),
+    experiment: Mapping[str, str] = MappingProxyType({"stepSize": "0.005"}),
 ) -> Path:
     """The rover as an FMU; `names` are others than its own."""
-    description = rover_description(interfaces)
+    description = rover_description(interfaces, experiment)
     for name, other in names.items():
         description = description.replace(quoteattr(name), quoteattr(other))
     with zipfile.ZipFile(path, "w") as archive:
@@ -77,14 +78,14 @@ def rover(
     return path
 
 
-def rover_description(interfaces: Sequence[str]) -> str:
+def rover_description(interfaces: Sequence[str], experiment: Mapping[str, str]) -> str:
     lines = [_variable(i, *each) for i, each in enumerate(ROVER)]
     outputs = [i + 1 for i, (_, causality) in enumerate(ROVER) if causality == "output"]
     derivatives = [i + 1 for i, (name, _) in enumerate(ROVER) if name.startswith("der(")]
     return f"""<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="2.0" modelName="Rover" guid="rover" numberOfEventIndicators="1">
 {"".join(interfaces)}
-<DefaultExperiment stepSize="0.005"/>
+<DefaultExperiment {" ".join(f'{key}="{told}"' for key, told in experiment.items())}/>
 <ModelVariables>{"".join(lines)}</ModelVariables>
 <ModelStructure>
 <Outputs>{_unknowns(outputs)}</Outputs>

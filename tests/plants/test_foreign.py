@@ -13,7 +13,7 @@ from laglab_fmu.foreign import FmuFile, ForeignRobot, Wiring, check
 from laglab_fmu.foreign.steps import substeps
 from laglab_fmu.foreign.values import starts
 
-from .building import CO_SIMULATION, FIXED_STEP, rover
+from .building import CO_SIMULATION, FIXED_STEP, MODEL_EXCHANGE, rover
 
 TS = 0.01
 WHEELS = {"omega_left": "drive.cmd_left", "omega_right": "drive.cmd_right"}
@@ -137,6 +137,28 @@ def test_a_sample_is_cut_into_whole_steps_whatever_their_quotient_rounds_to(
     assert substeps(file, sample_time) == parts
 
 
+@pytest.mark.parametrize("told", ["0", "-0.005", "nan", "inf", "abc"])
+@pytest.mark.parametrize(
+    ("key", "offered"), [("stepSize", FIXED_STEP), ("tolerance", MODEL_EXCHANGE)]
+)
+def test_a_step_and_a_tolerance_that_are_no_numbers_above_0_are_refused(
+    told: str, key: str, offered: str, tmp_path: Path, library: Path
+) -> None:
+    path = rover(tmp_path / "rover.fmu", library, [offered], experiment={key: told})
+    said = rf"rover.fmu: its modelDescription.xml: {key} must be a number above 0, not {told}"
+    with pytest.raises(FmuFileError, match=said):
+        check(FmuFile.read(path), ROVER, TS)
+
+
+@pytest.mark.parametrize("step", ["1e-320", "1e-9"])
+def test_steps_of_which_a_sample_has_too_many_are_refused(
+    step: str, tmp_path: Path, library: Path
+) -> None:
+    path = rover(tmp_path / "rover.fmu", library, [FIXED_STEP], experiment={"stepSize": step})
+    with pytest.raises(FmuFileError, match=r"it steps by \S+ s .* more than 1000000"):
+        check(FmuFile.read(path), ROVER, TS)
+
+
 def test_one_start_value_is_that_of_all_elements() -> None:
     def variable(start: str | None, *shape: int) -> ModelVariable:
         return ModelVariable("pose", 1, start=start, shape=shape)
@@ -144,6 +166,8 @@ def test_one_start_value_is_that_of_all_elements() -> None:
     assert starts(variable("2.5", 2, 2)) == [2.5] * 4
     assert starts(variable("1 2", 2)) == [1.0, 2.0]
     assert starts(variable(None, 2)) == [0.0, 0.0]
+    with pytest.raises(FmuFileError, match="pose starts at '1 x', which is no number"):
+        starts(variable("1 x", 2))
 
 
 @pytest.mark.parametrize(

@@ -7,13 +7,10 @@ from collections.abc import Callable
 from ctypes import Array, c_double
 from typing import Any
 
-from fmpy.model_description import ModelDescription
-
 from laglab_fmu.errors import CallError
-from laglab_fmu.foreign.steps import SAME
+from laglab_fmu.foreign.file import FmuFile
+from laglab_fmu.foreign.steps import SAME, tolerance
 
-TOLERANCE = 1e-6
-"""Relative, where the FMU asks for none."""
 ASKS_TO_END = "it asks to end the simulation"
 
 
@@ -27,20 +24,19 @@ class _HeldInput:
 class Integrator:
     """Moves `fmu`, which is in event mode, in solver steps of at most `longest` [s]."""
 
-    def __init__(self, fmu: Any, description: ModelDescription, longest: float) -> None:
-        self._fmu = fmu
+    def __init__(self, fmu: Any, file: FmuFile, longest: float) -> None:
+        self._fmu, description = fmu, file.description
         self._completes = bool(description.modelExchange.needsCompletedIntegratorStep)
         self._is_3 = description.fmiMajorVersion == 3
         self._problem: Exception | None = None
         self._next_event: float | None = None
         self._update(0.0)
-        self._solver = self._make_solver(description, longest)
+        self._solver = self._make_solver(file, longest)
 
-    def _make_solver(self, description: ModelDescription, longest: float) -> Any:
+    def _make_solver(self, file: FmuFile, longest: float) -> Any:
         from fmpy.sundials import CVodeSolver  # loads the library
 
-        fmu, experiment = self._fmu, description.defaultExperiment
-        told = experiment.tolerance if experiment is not None else None
+        fmu, description = self._fmu, file.description
         get_dx = fmu.getContinuousStateDerivatives if self._is_3 else fmu.getDerivatives
         return CVodeSolver(
             nx=description.numberOfContinuousStates,
@@ -54,7 +50,7 @@ class Integrator:
             input=_HeldInput(),
             startTime=0.0,
             maxStep=longest,
-            relativeTolerance=float(told) if told else TOLERANCE,
+            relativeTolerance=tolerance(file),
         )
 
     def _guarded(self, call: Callable[..., object]) -> Callable[..., object]:

@@ -67,8 +67,7 @@ class ForeignRobot:
             initialize(self._file, self._fmu, values)
             self._integrator = None
             if self._file.interface() == "model exchange":
-                description = self._file.description
-                self._integrator = Integrator(self._fmu, description, self._sample_time)
+                self._integrator = Integrator(self._fmu, self._file, self._sample_time)
             self._runs = True
             self.outputs = self._read()
         except (FMICallException, CallError) as error:

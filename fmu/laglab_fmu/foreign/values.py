@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 from fmpy.model_description import ModelVariable
 
+from laglab_fmu.errors import FmuFileError
 from laglab_fmu.foreign.wiring import Element, Value, size
 
 ENUMERATION = {2: "Integer", 3: "Int64"}
@@ -95,12 +96,21 @@ class Writer:
 
 
 def starts(variable: ModelVariable) -> list[float]:
-    """The values that a variable has at first, as its description says; 0 where it does not."""
+    """The values that a variable has at first, as its description says; 0 where it does not.
+
+    Raises FmuFileError: they are none.
+    """
     said = str(variable.start or "").split()
     many = size(variable)
     if len(said) == 1:
         said *= many  # FMI 3: one for all
-    return [float(each) for each in said] if len(said) == many else [0.0] * many
+    try:
+        return [float(each) for each in said] if len(said) == many else [0.0] * many
+    except ValueError as error:
+        raise FmuFileError(
+            f"{variable.name} starts at {variable.start!r}, which is no number: mend that in the "
+            "FMU's modelDescription.xml"
+        ) from error
 
 
 def starting(elements: Sequence[Element], numbers: Sequence[float]) -> Mapping[str, Value]:

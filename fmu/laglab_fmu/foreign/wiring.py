@@ -11,7 +11,7 @@ from fmpy.model_description import ModelVariable
 
 from laglab_fmu.errors import WiringError
 from laglab_fmu.foreign.file import FmuFile
-from laglab_fmu.foreign.steps import substeps
+from laglab_fmu.foreign.steps import substeps, tolerance
 
 Value = float | bool | str | Sequence[float]
 """A parameter's; whole numbers too."""
@@ -105,7 +105,8 @@ def check_parameters(file: FmuFile, values: Mapping[str, Value]) -> None:
 
 def check(file: FmuFile, wiring: Wiring, sample_time: float) -> None:
     """All that can be known to be wrong before the FMU runs. Raises FmuFileError."""
-    file.interface()
+    if file.interface() == "model exchange":
+        tolerance(file)
     substeps(file, sample_time)
     input_elements(file, wiring.inputs)
     output_elements(file, wiring.outputs)
