@@ -76,6 +76,19 @@ def _lost(session: RobotSession) -> list[int]:
     return lost[1:]
 
 
+def _sound(session: RobotSession) -> str | None:
+    """A station can make nothing of any other."""
+    for batch, last in batches(session):
+        for each in batch:
+            if not isinstance(each, Measurement):
+                continue
+            if each.tick > last.tick:
+                return f"tick {last.tick} brings a measurement that was sampled at tick {each.tick}"
+            if not all(map(math.isfinite, (each.x, each.y, each.theta))):
+                return f"the measurement of tick {each.tick} is ({each.x}, {each.y}, {each.theta})"
+    return None
+
+
 def _echoes(session: RobotSession) -> str | None:
     """Each measurement names an earlier command that was sent; none tells of motion but by commands
     from before ours, or by our creeping one, under its own name."""
@@ -90,7 +103,8 @@ def _echoes(session: RobotSession) -> str | None:
             return f"the measurement of tick {each.tick} names command {each.command_tick}"
         if not (others or each.command_tick in {NO_COMMAND, *session.said}):
             return f"the measurement of tick {each.tick} names a command that nobody sent"
-        if (abs(each.v) > CREEP * (1 + ROUNDED) or each.omega != 0.0) and not others:
+        commanded = -CREEP * ROUNDED <= each.v <= CREEP * (1 + ROUNDED) and each.omega == 0.0
+        if not (commanded or others):
             return f"the measurement of tick {each.tick} moves, though nobody commanded it"
     return None
 
@@ -106,5 +120,6 @@ def no_earlier(session: RobotSession) -> str | None:
 STAMPED = [
     Item("ticks", "measurements come before their tick", _in_order),
     Item("ticks", "the tick counts its measurements", _counts),
+    Item("ticks", "measurements are finite, and of no later tick", _sound),
     Item("ticks", "measurements tell the command in force", _echoes),
 ]

@@ -30,6 +30,8 @@ ROBOT = BOTH | {
     "never repeats": "an unanswered tick is repeated",
     "measures again for a repeat": "a repeat brings the same messages",
     "miscounts measurements": "the tick counts its measurements",
+    "measures infinity": "measurements are finite, and of no later tick",
+    "measures ahead": "measurements are finite, and of no later tick",
     "moves by itself": "measurements tell the command in force",
     "goes back to earlier commands": "a later measurement tells of no earlier command",
     "leaves ticks out": "it goes from tick to tick",

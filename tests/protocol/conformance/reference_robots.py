@@ -1,5 +1,6 @@
 """Small robots in lock-step that keep the rules, each with one fault if told so."""
 
+import math
 import time
 from pathlib import Path
 
@@ -77,7 +78,10 @@ class Robot(Peer):
 
     def say_tick(self, tick: int) -> None:
         x = float(self.repeats) if self.fault == "measures again for a repeat" else 0.0
-        sample = Measurement(x, 0.0, 0.0, self.speed, 0.0, tick, self.echo(self.in_force(tick)))
+        y = math.inf if self.fault == "measures infinity" else 0.0
+        v = -self.speed if self.fault == "tells of motion backwards" else self.speed
+        sampled = tick + (self.fault == "measures ahead")
+        sample = Measurement(x, y, 0.0, v, 0.0, sampled, self.echo(self.in_force(tick)))
         if tick != self.told:
             self.telling, self.owed, self.told = self.owed, None, tick
         first = [sample] if self.telling is None else [self.telling, sample]

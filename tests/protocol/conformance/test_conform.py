@@ -101,6 +101,13 @@ def test_a_broken_controller_fails_its_own_item_alone() -> None:
     assert failed_of(controller_with, CONTROLLER) == its_own_alone(CONTROLLER)
 
 
+def test_a_robot_that_tells_of_motion_the_other_way_round_is_found_out() -> None:
+    """Of its commands nothing is seen to come into force: other items may fail, too."""
+    report = robot_with("tells of motion backwards")
+    assert "measurements tell the command in force" in report.failed
+    assert "moves, though nobody commanded it" in report.table()
+
+
 @pytest.mark.slow
 def test_a_robot_with_a_habit_that_breaks_no_rule_conforms() -> None:
     """Its ticks come many at once, or seldom while nobody commands it; its speeds are rounded."""
