@@ -157,7 +157,14 @@ def test_the_file_is_not_written_for_every_frame(tmp_path: Path) -> None:
     assert StoredTimestamps(path).last[STREAM] >= stamp_of(said[-1]) > NOW + AHEAD
 
 
-@pytest.mark.parametrize("text", ["[1]", "{", '{"a": 1}', '{"0/1/1": "x"}', '{"0/1/1": null}'])
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("[1]", "{", "[" * 100_000, '{"a": 1}'),
+        *(f'{{"0/1/1": {last}}}' for last in ('"x"', "null", "Infinity", "1e30", "-5", 2**48 - 1)),
+    ],
+    ids=range(10),
+)
 def test_spoiled_timestamps_are_not_forgotten_quietly(tmp_path: Path, text: str) -> None:
     path = tmp_path / "timestamps"
     path.write_text(text)

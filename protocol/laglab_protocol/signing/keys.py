@@ -15,12 +15,16 @@ from laglab_protocol.framing.sender import Sender
 from laglab_protocol.signing.signature import (
     AHEAD,
     KEY_SIZE,
+    MINUTE,
     Place,
     Signer,
     Stream,
     Timestamps,
     Verifier,
 )
+
+LATEST = (1 << 48) - MINUTE
+"""A timestamp, in 2104: six bytes hold what follows for a minute more."""
 
 
 def make_key(path: Path) -> None:
@@ -69,8 +73,10 @@ class StoredTimestamps(Timestamps):
         self._path = path
         try:
             stored = json.loads(path.read_text()) if path.exists() else {}
-            self.places = {_stream(name): Place(int(last), 0) for name, last in stored.items()}
-        except (OSError, ValueError, TypeError, AttributeError) as error:
+            self.places = {
+                _stream(name): Place(_timestamp(last), 0) for name, last in stored.items()
+            }
+        except (OSError, ValueError, TypeError, AttributeError, RecursionError) as error:
             raise KeyFileError(
                 f"{path} does not hold the timestamps of a key: {error}; without them old frames "
                 "could be played again: restore it, or make a new key for both sides"
@@ -111,6 +117,13 @@ def _replace(path: Path, text: str) -> None:
 def _stream(name: str) -> Stream:
     link, system, component = map(int, name.split("/"))
     return link, system, component
+
+
+def _timestamp(told: object) -> int:
+    """As it was kept. Raises ValueError: it is none that could be counted on from."""
+    if type(told) is not int or not 0 <= told < LATEST:
+        raise ValueError(f"{told!r} is no timestamp")
+    return told
 
 
 def timestamps_path(key_file: Path, system: int, component: int) -> Path:
