@@ -13,6 +13,7 @@ import pytest
 import scipy.io
 
 import laglab
+from laglab.errors import PlaceError
 from laglab.export import export
 from laglab.export.csv_files import write_csv
 from laglab.export.formats import FORMATS
@@ -174,6 +175,13 @@ def test_a_damaged_table_is_told_in_a_line(
     for name in ("csv", "mcap"):
         assert "run" in refused("export", "run", "--format", name)
     assert not Path("run.mcap").exists()
+
+
+def test_from_python_a_text_says_where_and_an_unknown_format_is_refused(a_run: Run) -> None:
+    assert export(a_run, "csv", "there") == Path("there")
+    assert (Path("there") / "ticks.csv").is_file()
+    with pytest.raises(PlaceError, match=r"format: take one of csv, .*, not 'xlsx'"):
+        export(a_run, "xlsx")  # type: ignore[arg-type]
 
 
 def test_tables_without_a_row_have_their_columns() -> None:

@@ -31,21 +31,23 @@ class Format(NamedTuple):
     write: Callable[[Run, Path], None]
 
 
-def export(run: Run, name: FormatName, out: Path | None = None, force: bool = False) -> Path:
+def export(run: Run, name: FormatName, out: str | Path | None = None, force: bool = False) -> Path:
     """Write the run to `out`, or here under the name of its folder; says where that is.
 
     What is there already is replaced only with `force`.
 
     Raises:
         MissingExtraError: what writes the format is not installed.
-        PlaceError: it cannot go there.
+        PlaceError: it cannot go there, or there is no such format.
         NoRunError: the run's files are damaged.
         ResultsError: there is no room for it.
     """
+    if name not in FORMATS:
+        raise PlaceError(f"format: take one of {', '.join(FORMATS)}, not {name!r}")
     chosen = FORMATS[name]
     if chosen.need:
         require(chosen.need)
-    place = _place(chosen, out or Path(_named(run) + chosen.ending), force)
+    place = _place(chosen, Path(out or _named(run) + chosen.ending), force)
     try:
         chosen.write(run, place)
     except BaseException:
