@@ -186,3 +186,9 @@ def test_a_verdict_names_the_tick_of_a_failure_once(ended: Ended, folder: Path) 
         r"stopped at tick \d+: failing:Law\.drive: ValueError: no more \(failing\.py, line 4\)",
         said,
     )
+
+
+@pytest.mark.parametrize("name", ["run\0", "x" * 5000], ids=["0", "long"])
+def test_what_no_folder_can_be_called_is_told_from_python_too(name: str) -> None:
+    with pytest.raises(laglab.ResultsError, match=r"is no name of a folder|is not there"):
+        laglab.open_run(name)

@@ -1,5 +1,6 @@
 """What a run tells of itself, as data: the contents of ``summary.json``."""
 
+import os
 from pathlib import Path
 from typing import Literal
 
@@ -119,13 +120,16 @@ def read_summary(directory: Path) -> Summary:
         raise NoRunError(_why_not(directory, error)) from error
     except (msgspec.DecodeError, RecursionError) as error:
         raise NoRunError(f"{path} is not a run's summary: {error}") from error
+    except ValueError as error:  # a name with a 0 in it
+        raise NoRunError(f"{str(directory)!r} is no name of a folder: {error}") from error
     raise NoRunError(f"{path} has schema version {version}, this laglab reads {SCHEMA_VERSION}")
 
 
 def _why_not(directory: Path, error: OSError) -> str:
-    if not directory.exists():
+    there = os.path.exists(directory)  # noqa: PTH110 Path.exists raises where a name is too long
+    if not (there or isinstance(error, PermissionError)):
         return f"{directory} is not there: name the folder of a run"
-    if (directory / STUDY_FILE).exists():
+    if os.path.exists(directory / STUDY_FILE):  # noqa: PTH110 or where nobody may look
         return f"{directory} is a study's: `laglab map` and `laglab sweep --report` show it"
     return f"{directory / SUMMARY_FILE} cannot be read: {error.strerror}"
 
