@@ -154,6 +154,17 @@ def test_what_is_there_is_kept(exported: Exported, name: str, a_run: Run, refuse
     assert place.read_bytes() != b"kept"
 
 
+def test_a_runs_own_tables_are_kept_whatever_is_said(a_run: Run, refused: Refused) -> None:
+    assert a_run.directory
+    before = (a_run.directory / "arrivals.csv").read_bytes()
+    line = refused(
+        "export", a_run.directory, "--format", "csv", "--out", a_run.directory, "--force"
+    )
+    assert "a run's results are there: take another folder" in line
+    assert (a_run.directory / "arrivals.csv").read_bytes() == before
+    assert not (a_run.directory / "ticks.csv").exists()
+
+
 def test_what_cannot_be_is_a_line(a_run: Run, refused: Refused) -> None:
     Path("empty").mkdir()
     assert "empty/summary.json" in refused("export", "empty", "--format", "csv")

@@ -14,6 +14,7 @@ from laglab.export.tables import Tables, tables
 from laglab.extras import BAGS, MATLAB, PARQUET, Need, require
 from laglab.files import file_place, folder_place, whole_file, write_whole
 from laglab.results.run import Run
+from laglab.results.summary import SUMMARY_FILE
 
 FormatName = Literal["csv", "parquet", "mat", "mcap", "ros2bag"]
 BAG = "run.mcap"
@@ -63,6 +64,8 @@ def _named(run: Run) -> str:
 
 
 def _place(chosen: Format, place: Path, force: bool) -> Path:
+    if chosen.files and (place / SUMMARY_FILE).exists():  # some of its files have the same names
+        raise PlaceError(f"--out {place}: a run's results are there: take another folder")
     taken = [place / file for file in chosen.files] if chosen.files else [place]
     if not force and (there := [path for path in taken if path.is_file()]):
         raise PlaceError(f"{there[0]} is there already: say another --out, or --force")
