@@ -160,10 +160,17 @@ def test_when_only_the_figure_finds_no_room(small_disk: SmallDisk) -> None:
     assert left == {"scenario.toml", "summary.json", *record}
 
 
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run that is to be exported."""
+    folder = tmp_path_factory.mktemp("runs") / "whole"
+    laglab.run("lab", {"duration": 3.0}, out=folder)
+    return folder
+
+
 @pytest.mark.parametrize("name", ["csv", "parquet", "mat", "mcap"])
-def test_of_an_export(small_disk: SmallDisk, tmp_path: Path, name: str) -> None:
-    laglab.run("lab", {"duration": 3.0}, out=tmp_path / "whole")
-    export = small_disk.start("export", "whole", "--format", name, size=20)
+def test_of_an_export(small_disk: SmallDisk, whole: Path, name: str) -> None:
+    export = small_disk.start("export", str(whole), "--format", name, size=20)
     place = r"small/run(/ticks\.\w+)?"
     line = rf"laglab: cannot write {place}: (No space left on device|File too large)"
     assert_one_line(said(export, 4), line)
