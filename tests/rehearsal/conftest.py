@@ -52,18 +52,28 @@ class Ended(NamedTuple):
     err: str
 
 
+def _ended(captured: pytest.CaptureFixture[str], *arguments: object) -> Ended:
+    captured.readouterr()
+    with pytest.raises(SystemExit) as ended:
+        main([str(each) for each in arguments])
+    assert isinstance(ended.value.code, int)
+    return Ended(ended.value.code, *captured.readouterr())
+
+
 @pytest.fixture
 def ended(capsys: pytest.CaptureFixture[str]) -> Callable[..., Ended]:
     """``laglab ARGUMENTS`` in this process, where the current directory is."""
+    return partial(_ended, capsys)
 
-    def call(*arguments: object) -> Ended:
-        capsys.readouterr()
-        with pytest.raises(SystemExit) as ended:
-            main([str(each) for each in arguments])
-        assert isinstance(ended.value.code, int)
-        return Ended(ended.value.code, *capsys.readouterr())
 
-    return call
+@pytest.fixture
+def ended_here(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Callable[..., Ended]:
+    """The same in an empty folder, and with what the processes said that it started: `laglab`,
+    where its own process is not what is tested, for that takes a second to start."""
+    monkeypatch.chdir(tmp_path)
+    return partial(_ended, capfd)
 
 
 @pytest.fixture

@@ -73,18 +73,18 @@ def test_delayed_ekf_is_consistent_and_popf_and_ekf_are_too_sure():
         assert np.all(one.claimed[60] < one.true[60])
 
 
-def test_the_command_leaves_table_and_picture(laglab, tmp_path):
-    ended = laglab("consistency", "lab", "--duration", "0.5", "--seeds", "3", "--workers", "1")
-    assert ended.returncode == 0, ended.stderr
+def test_the_command_leaves_table_and_picture(ended_here, tmp_path):
+    short = ("--duration", "0.5", "--seeds", "3", "--workers", "1")
+    code, out, errors = ended_here("consistency", "lab", *short)
+    assert code == 0, errors
     for name in ("ekf", "popf", "popf-exact", "delayed-ekf"):
-        assert name in ended.stdout
+        assert name in out
     assert (tmp_path / "consistency.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_a_filter_that_claims_nothing_cannot_be_judged(laglab):
-    ended = laglab("consistency", "lab", "--judge", "raw")
-    assert (ended.returncode, ended.stdout) == (2, "")
-    assert "--judge: must not be 'raw', which estimates nothing" in ended.stderr
+def test_a_filter_that_claims_nothing_cannot_be_judged(refused):
+    said = refused("consistency", "lab", "--judge", "raw")
+    assert "--judge: must not be 'raw', which estimates nothing" in said
 
 
 @pytest.mark.parametrize(

@@ -35,12 +35,12 @@ def test_it_is_popf_whatever_the_scenario_s_filter_is():
     assert raw == popf
 
 
-def test_the_command_prints_a_line_for_each(laglab):
-    ended = laglab("errata", "fig6", "--duration", "1", "--seeds", "1")
-    assert ended.returncode == 0, ended.stderr
+def test_the_command_prints_a_line_for_each(ended_here):
+    code, out, errors = ended_here("errata", "fig6", "--duration", "1", "--seeds", "1")
+    assert code == 0, errors
     for erratum in Erratum:
-        assert f"({erratum.equation}) {erratum.printed}" in ended.stdout
-    assert "as corrected" in ended.stdout
+        assert f"({erratum.equation}) {erratum.printed}" in out
+    assert "as corrected" in out
 
 
 def test_seeds_that_are_none_are_refused_before_anything_runs(refused):

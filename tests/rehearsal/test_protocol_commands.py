@@ -147,14 +147,14 @@ def test_only_a_robot_has_a_pace_and_one_in_lock_step_gives_up(
 
 
 def test_the_kit_waits_as_long_as_it_is_told(
-    laglab: Laglab, start: Start, listening_port: ListeningPort
+    ended: Ended, start: Start, listening_port: ListeningPort
 ) -> None:
     gateway = start("gateway", "fig6", "--silence", "0.5", "--endpoint", "udpin://127.0.0.1:0")
     url = f"udpout://127.0.0.1:{listening_port(gateway)}"
-    result = laglab("conform", url, "--side", "robot", "--wait", "3", "--silent")
-    assert result.returncode == 0, result.stdout
-    assert "it gives up a silent station" in result.stdout
-    assert laglab("conform", url, "--side", "robot", "--wait", "0").returncode == 2
+    result = ended("conform", url, "--side", "robot", "--wait", "3", "--silent")
+    assert result.code == 0, result.out
+    assert "it gives up a silent station" in result.out
+    assert ended("conform", url, "--side", "robot", "--wait", "0").code == 2
 
 
 def test_a_ground_station_reads_the_gains_and_the_noise() -> None:

@@ -10,7 +10,6 @@ import pytest
 import laglab as lab
 
 Start = Callable[..., "subprocess.Popen[str]"]
-Laglab = Callable[..., "subprocess.CompletedProcess[str]"]
 Ended = Callable[..., tuple[int, str, str]]
 WANDERING = """
 import os
@@ -66,11 +65,12 @@ def away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.mark.parametrize("transport", ["inline", "udp"])
 def test_a_run_of_what_goes_elsewhere_stays(
-    laglab: Laglab, tmp_path: Path, away: Path, transport: str
+    ended_here: Ended, tmp_path: Path, away: Path, transport: str
 ) -> None:
-    run = laglab("run", "lab", "--duration", "1", *OWN, "--transport", transport, "--out", "run")
-    assert run.returncode == 0, run.stderr
-    assert "results in run\n" in run.stdout
+    options = ("--duration", "1", *OWN, "--transport", transport, "--out", "run")
+    code, out, errors = ended_here("run", "lab", *options)
+    assert code == 0, errors
+    assert "results in run\n" in out
     there = {path.name for path in (tmp_path / "run").iterdir()}
     assert {"trace.csv", "arrivals.csv", "claims.csv", "summary.json", "figure.png"} <= there
     assert not list(away.iterdir())

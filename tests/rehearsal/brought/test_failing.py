@@ -67,10 +67,10 @@ def failed_as_it_must(folder: Path, code: int, stderr: str, said: str) -> None:
 
 @pytest.mark.parametrize(("kind", "name", "said"), FAILING)
 def test_what_fails_under_way_ends_both_processes_in_one_line_and_keeps_the_record(
-    laglab: Laglab, brought: Path, kind: str, name: str, said: str
+    ended_here: Ended, brought: Path, kind: str, name: str, said: str
 ) -> None:
-    failed = laglab(*LAB, kind, f"mine:{name}")
-    failed_as_it_must(brought, failed.returncode, failed.stderr, said)
+    code, _, stderr = ended_here(*LAB, kind, f"mine:{name}")
+    failed_as_it_must(brought, code, stderr, said)
 
 
 @pytest.mark.parametrize(
@@ -81,11 +81,11 @@ def test_what_fails_under_way_ends_both_processes_in_one_line_and_keeps_the_reco
     ],
 )
 def test_in_a_process_of_its_own_nobody_is_there_to_be_asked(
-    laglab: Laglab, brought: Path, name: str, said: str
+    ended_here: Ended, brought: Path, name: str, said: str
 ) -> None:
     """It is ours from which the orders come, so what waited for an answer waited for good."""
-    failed = laglab(*LAB, "--estimator", f"mine:{name}", "--silence", "5")
-    failed_as_it_must(brought, failed.returncode, failed.stderr, said)
+    code, _, stderr = ended_here(*LAB, "--estimator", f"mine:{name}", "--silence", "5")
+    failed_as_it_must(brought, code, stderr, said)
 
 
 MARKUP = (

@@ -2,7 +2,6 @@
 
 import gzip
 import json
-import subprocess
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -20,7 +19,7 @@ from laglab_gateway import LinkRow
 from .measured import HOW, imported
 from .printed import LINUX, pings
 
-Laglab = Callable[..., subprocess.CompletedProcess[str]]
+Ended = Callable[..., Any]
 Refused = Callable[..., str]
 
 
@@ -82,10 +81,10 @@ NETEM = """\
 """
 
 
-def test_a_table_of_netems_is_a_distribution(laglab: Laglab, tmp_path: Path) -> None:
+def test_a_table_of_netems_is_a_distribution(ended_here: Ended, tmp_path: Path) -> None:
     (tmp_path / "two.dist").write_text(NETEM)
-    result = laglab("link", "import", "two.dist", "--mean", "0.05", "--spread", "0.01")
-    assert result.returncode == 0, result.stderr
+    result = ended_here("link", "import", "two.dist", "--mean", "0.05", "--spread", "0.01")
+    assert result.code == 0, result.err
     delay = load(str(tmp_path / "link.toml")).link.command.extra_delay
     assert delay is not None
     rng = np.random.default_rng(1)
@@ -97,14 +96,14 @@ def test_a_table_of_netems_is_a_distribution(laglab: Laglab, tmp_path: Path) -> 
     assert read_table(tmp_path / "large.dist", 0.0, 1.0) is None
 
 
-def test_what_was_imported_is_read_again(laglab: Laglab, tmp_path: Path) -> None:
+def test_what_was_imported_is_read_again(ended_here: Ended, tmp_path: Path) -> None:
     (tmp_path / "ping.txt").write_text(LINUX)
-    result = laglab("link", "import", "ping.txt", "--interval", "0.01")
-    assert result.returncode == 0, result.stderr
-    assert "half of a round trip" in " ".join(result.stdout.split())
+    result = ended_here("link", "import", "ping.txt", "--interval", "0.01")
+    assert result.code == 0, result.err
+    assert "half of a round trip" in " ".join(result.out.split())
     again = read_measured(tmp_path / "link.csv", 0.01)
     assert len(again.command.delay) == 100
-    assert laglab("link", "import", "link.csv").returncode == 2
+    assert ended_here("link", "import", "link.csv").code == 2
 
 
 def test_of_several_copies_the_first_that_came_counts(tmp_path: Path) -> None:

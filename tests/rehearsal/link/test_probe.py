@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -37,7 +38,7 @@ from laglab_protocol import (
     read_tlog,
 )
 
-Laglab = Callable[..., subprocess.CompletedProcess[str]]
+Ended = Callable[..., Any]
 
 
 Refused = Callable[..., str]
@@ -120,15 +121,15 @@ def test_after_a_flood_the_next_is_answered_at_once(
 
 
 def test_over_udp_frames_have_the_sizes_of_a_run_signed_or_not(
-    echoing: Callable[..., str], laglab: Laglab, tmp_path: Path
+    echoing: Callable[..., str], ended_here: Ended, tmp_path: Path
 ) -> None:
     make_key(tmp_path / "key")
     for options, sizes in (((), (121, 75)), (("--key", "key"), (147, 101))):
         url = f"udpout://{echoing(*options)}"
         measured = ("--duration", "0.4", "--clocks-within", "0", *options)
-        result = laglab("link", "probe", url, *measured)
-        assert result.returncode == 0, result.stderr
-        assert "one-way" in result.stdout
+        result = ended_here("link", "probe", url, *measured)
+        assert result.code == 0, result.err
+        assert "one-way" in result.out
         with (tmp_path / "link.csv").open() as file:
             rows = list(csv.DictReader(file))
         for direction, size in zip(("command", "measurement"), sizes, strict=True):
@@ -171,26 +172,26 @@ def test_strangers_are_not_answered_unless_they_may(refused: Refused) -> None:
 
 
 def test_a_missing_key_is_named(
-    echoing: Callable[..., str], laglab: Laglab, tmp_path: Path
+    echoing: Callable[..., str], ended_here: Ended, tmp_path: Path
 ) -> None:
     make_key(tmp_path / "key")
     url = f"udpout://{echoing()}"
-    result = laglab("link", "probe", url, "--key", "key", "--wait", "0.5")
-    assert result.returncode == 4
-    assert "the same --key or none" in result.stderr
+    result = ended_here("link", "probe", url, "--key", "key", "--wait", "0.5")
+    assert result.code == 4
+    assert "the same --key or none" in result.err
 
 
 @pytest.mark.parametrize(("baud", "interval"), [(57600, 0.04), (115200, 0.025)])
 def test_on_a_serial_line_delays_are_its_arithmetic(
-    start: Start, laglab: Laglab, tmp_path: Path, baud: int, interval: float
+    start: Start, ended_here: Ended, tmp_path: Path, baud: int, interval: float
 ) -> None:
     line = start("serial", "robot", "station", "--baud", str(baud))
     while not (tmp_path / "station").exists():
         time.sleep(0.02)
     start("link", "echo", f"serial://robot:{baud}")
     options = ("--interval", str(interval), "--duration", "1", "--clocks-within", "0")
-    result = laglab("link", "probe", f"serial://station:{baud}", *options, "--wait", "20")
-    assert result.returncode == 0, result.stderr
+    result = ended_here("link", "probe", f"serial://station:{baud}", *options, "--wait", "20")
+    assert result.code == 0, result.err
     measured = read_measured(tmp_path / "link.csv", interval)
     for _, flow in measured.flows:
         assert flow.lost.mean() < 0.5  # a busy machine pauses within a frame, which ends it
@@ -201,12 +202,13 @@ def test_on_a_serial_line_delays_are_its_arithmetic(
     assert "lost because nobody read them" not in report
 
 
-def test_a_pty_can_be_measured_too(start: Start, laglab: Laglab, tmp_path: Path) -> None:
+def test_a_pty_can_be_measured_too(start: Start, ended_here: Ended, tmp_path: Path) -> None:
     with open_endpoint(f"pty://{tmp_path}/port"):
         pass  # a path that is free again
     start("link", "echo", "pty://port")
     while not (tmp_path / "port").exists():
         time.sleep(0.02)
-    result = laglab("link", "probe", "serial://port:115200", "--duration", "0.3", "--wait", "20")
-    assert result.returncode == 0, result.stderr
-    assert "half of the shortest round trip" in " ".join(result.stdout.split())
+    measured = ("--duration", "0.3", "--wait", "20")
+    result = ended_here("link", "probe", "serial://port:115200", *measured)
+    assert result.code == 0, result.err
+    assert "half of the shortest round trip" in " ".join(result.out.split())
