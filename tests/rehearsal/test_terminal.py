@@ -66,11 +66,17 @@ def on_a_terminal(folder: Path, columns: int, *arguments: str, **environment: st
     return Shown(raw, re.split(r"[\r\n]+", CONTROL.sub("", raw)))
 
 
+@pytest.fixture(scope="module")
+def wide(tmp_path_factory: pytest.TempPathFactory) -> Shown:
+    """A run on a terminal of a hundred columns."""
+    return on_a_terminal(tmp_path_factory.mktemp("wide"), 100, *LOCKSTEP)
+
+
 @pytest.mark.parametrize("columns", [100, 60, 40])
 def test_progress_tells_rate_and_time_to_go_as_far_as_there_is_room(
-    columns: int, tmp_path: Path
+    columns: int, wide: Shown, tmp_path: Path
 ) -> None:
-    shown = on_a_terminal(tmp_path, columns, *LOCKSTEP)
+    shown = wide if columns == 100 else on_a_terminal(tmp_path, columns, *LOCKSTEP)
     progress = [line for line in shown.lines if line.startswith("lab-radio") and "%" in line]
     assert progress
     assert all(len(line.rstrip()) <= columns for line in progress)
@@ -90,9 +96,9 @@ def test_by_the_clock_one_line_says_how_the_run_is(columns: int, tmp_path: Path)
     assert bool(told) == (columns == 100)
 
 
-def test_without_colour_where_that_is_asked_for(tmp_path: Path) -> None:
-    assert COLOR.search(on_a_terminal(tmp_path, 80, *LOCKSTEP).raw)
-    assert not COLOR.search(on_a_terminal(tmp_path, 80, *LOCKSTEP, "--force", NO_COLOR="1").raw)
+def test_without_colour_where_that_is_asked_for(wide: Shown, tmp_path: Path) -> None:
+    assert COLOR.search(wide.raw)
+    assert not COLOR.search(on_a_terminal(tmp_path, 100, *LOCKSTEP, NO_COLOR="1").raw)
 
 
 @pytest.mark.parametrize("arguments", [LOCKSTEP, BY_THE_CLOCK], ids=["lockstep", "realtime"])
