@@ -84,27 +84,52 @@ def laglab(tmp_path: Path) -> Laglab:
     return call
 
 
+Ended = tuple[int, str, str]
+
+
+@pytest.fixture
+def ended(
+    ice: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> Callable[..., Ended]:
+    """The command in this process: its exit code, what it and its processes said."""
+    monkeypatch.chdir(ice)
+
+    def call(*arguments: str) -> Ended:
+        with pytest.raises(SystemExit) as ended:
+            main(list(arguments))
+        said = capfd.readouterr()
+        return int(ended.value.code or 0), said.out, said.err
+
+    return call
+
+
 def test_the_page_s_robot_keeps_the_interface(ice: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(ice)
     assert {finding.held for finding in checked("plant", "ice:Skater")} == {"yes"}
 
 
-def test_the_page_s_robot_runs_the_same_by_every_way(ice: Path, laglab: Laglab) -> None:
+def test_the_page_s_robot_runs_the_same_by_every_way(
+    ice: Path, laglab: Laglab, ended: Callable[..., Ended]
+) -> None:
     (ice / "own.toml").write_text(blocks("toml")[1])
-    for way in ("inline", "udp"):
-        done = laglab("run", "own.toml", "--duration", "1", "--transport", way, "--out", way)
-        assert done.returncode == 0, done.stderr
-        assert "plant" in (ice / way / "summary.json").read_text()
+    short = ("run", "own.toml", "--duration", "1")
+    code, _, errors = ended(*short, "--transport", "inline", "--out", "inline")
+    assert code == 0, errors
+    done = laglab(*short, "--transport", "udp", "--out", "udp")
+    assert done.returncode == 0, done.stderr
+    assert all("plant" in (ice / way / "summary.json").read_text() for way in ("inline", "udp"))
     traces = [(ice / way / "trace.csv").read_bytes() for way in ("inline", "udp")]
     assert traces[0] == traces[1]
 
 
-def test_what_fails_in_a_process_of_its_own_ends_the_run(ice: Path, laglab: Laglab) -> None:
-    done = laglab("run", "fig6", "--set", "plant.kind=faulty:Raises")
-    assert done.returncode == 4
+def test_what_fails_in_a_process_of_its_own_ends_the_run(
+    ice: Path, ended: Callable[..., Ended]
+) -> None:
+    code, _, errors = ended("run", "fig6", "--set", "plant.kind=faulty:Raises")
+    assert code == 4
     said = "laglab: tick 6: faulty:Raises.step: ValueError: no ice left here (faulty.py, line 8)"
-    assert done.stderr.splitlines()[0] == said
-    assert "Traceback" not in done.stderr
+    assert errors.splitlines()[0] == said
+    assert "Traceback" not in errors
     assert 5 <= len(read_trace(ice / "runs" / "fig6" / "trace.csv")["tick"]) <= 7
 
 
@@ -184,9 +209,9 @@ def test_an_installed_one_is_listed(ice: Path) -> None:
     assert "lost rink 1.2 lost: AttributeError" in " ".join(listed.split())
 
 
-def test_it_is_driven_by_the_check(ice: Path, laglab: Laglab) -> None:
+def test_it_is_driven_by_the_check(ice: Path, ended: Callable[..., Ended]) -> None:
     (ice / "own.toml").write_text(blocks("toml")[1])
-    done = laglab("plant", "check", "own.toml")
-    assert done.returncode == 0, done.stderr
-    assert "yes, twice the same bits" in done.stdout
-    assert "can be placed  yes" in done.stdout
+    code, out, errors = ended("plant", "check", "own.toml")
+    assert code == 0, errors
+    assert "yes, twice the same bits" in out
+    assert "can be placed  yes" in out
