@@ -152,7 +152,7 @@ class _Rehearsal:
         self._setup = setup
         self._progress = progress
         self._ending = Ending(begun=False)
-        self._finished = self._over = self._station_over = False
+        self._finished = self._over = self._station_over = self._interrupted = False
         self._problems: list[str] = []
 
     def follow(self) -> Ending:
@@ -165,6 +165,7 @@ class _Rehearsal:
             try:
                 self._read_on(self._scenario.silence_timeout + NOTICE_SECONDS)
             except KeyboardInterrupt:
+                self._interrupted = True
                 self._gateway.stop()
                 self._read_on(GOODBYE_SECONDS if self._ending.begun else STILL_STARTING)
             wait_for(self._setup.last)
@@ -256,8 +257,8 @@ class _Rehearsal:
 
     def _summed_up(self) -> Ending:
         ending = self._ending
-        if self._problems and not ending.begun:
-            ending = replace(ending, outcome=None)  # the side that was left was stopped
+        if self._problems and not (ending.begun or self._interrupted):
+            ending = replace(ending, outcome=None)  # the side that was left was stopped by us
         if ending.outcome is not None and ending.outcome.reason is not EndReason.FAILED:
             return ending.warned(self._problems)
         return replace(ending, problem="; ".join(self._problems))
