@@ -39,6 +39,17 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
     return (os.cpu_count() or 1) + ("not slow" in config.option.markexpr)
 
 
+@pytest.fixture(autouse=True)
+def _no_module_is_anothers(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """What a test brought into its folder is gone with it: the next may have one of that name."""
+    before = set(sys.modules)
+    yield
+    folders = str(tmp_path_factory.getbasetemp())
+    for name in sys.modules.keys() - before:
+        if str(getattr(sys.modules[name], "__file__", "")).startswith(folders):
+            del sys.modules[name]
+
+
 Start = Callable[..., "subprocess.Popen[str]"]
 
 

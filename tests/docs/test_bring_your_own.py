@@ -54,7 +54,6 @@ def test_each_command_does_what_it_says(folder: Path) -> None:
 
 def test_the_scenario_it_shows_is_one(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(folder)
-    monkeypatch.delitem(sys.modules, "mine", raising=False)  # other tests bring others of the name
     (folder / "own.toml").write_text(f"duration = 0.3\n{TOML}")
     run = lab.run("own.toml")
     assert run.scenario.estimator.kind == "mine:Inflated"

@@ -112,7 +112,7 @@ def test_mat_reads_back_and_says_its_units(exported: Exported, a_run: Run) -> No
 def test_a_filter_may_be_called_anything_in_a_mat_file(monkeypatch: pytest.MonkeyPatch) -> None:
     """MATLAB's names are ASCII and short: none is refused, and none takes another's place."""
     long = "a_filter_whose_name_is_much_longer_than_matlab_lets_a_name_be"
-    kinds = [f"{long}:One", f"{long}:Two", "mine:Schätzer", "mine:S_a", "mine_S:a"]
+    kinds = [f"{long}:One", f"{long}:Two", "named:Schätzer", "named:S_a", "named_S:a"]
     for kind in kinds:
         module, _, name = kind.partition(":")
         with Path(f"{module}.py").open("a", encoding="utf-8") as file:
@@ -123,7 +123,7 @@ def test_a_filter_may_be_called_anything_in_a_mat_file(monkeypatch: pytest.Monke
     ticks, units = read["ticks"]._fieldnames, read["units"].ticks._fieldnames
     assert ticks == units
     assert len(ticks) == len(tick_columns(kinds))
-    assert {"x_mine_Sch_tzer", "x_mine_S_a", "x_mine_S_a_2"} < set(ticks)
+    assert {"x_named_Sch_tzer", "x_named_S_a", "x_named_S_a_2"} < set(ticks)
 
 
 @pytest.mark.parametrize("name", FORMATS)

@@ -1,7 +1,6 @@
 """Somebody's code may change the current folder: the results are where the user said."""
 
 import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -56,8 +55,7 @@ OWN = ("--set", "plant.kind=own:Plant", "--estimator", "own:Filter", "--estimato
 
 
 @pytest.fixture
-def away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.delitem(sys.modules, "own", raising=False)  # other tests have others
+def away(tmp_path: Path) -> Path:
     (tmp_path / "own.py").write_text(WANDERING)
     (tmp_path / "away").mkdir()
     return tmp_path / "away"

@@ -1,7 +1,6 @@
 """A folder with what somebody brought, in which the commands are run."""
 
 import shutil
-import sys
 from pathlib import Path
 
 import pytest
@@ -14,6 +13,4 @@ def brought(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for name in names:
         shutil.copy(Path(__file__).with_name(f"{name}.py"), tmp_path)
     monkeypatch.chdir(tmp_path)
-    for name in names:  # other tests bring others of these names
-        monkeypatch.delitem(sys.modules, name, raising=False)
     return tmp_path
