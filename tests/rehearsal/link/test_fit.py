@@ -27,8 +27,6 @@ from laglab.link.told import overtaken
 from laglab.scenario import load
 from laglab_gateway import Burst, ExtraDelay, Impairments
 
-from .printed import pings
-
 Said = Refused = Callable[..., str]
 Ended = Callable[..., tuple[int, str, str]]
 TS = 0.01
@@ -275,18 +273,6 @@ def test_tables_stay_within_80_columns(said: Said, tmp_path: Path) -> None:
     lines = said("link", "fit").splitlines()
     assert max(map(len, lines)) <= 80
     assert not any("…" in line for line in lines)
-
-
-def test_a_measurement_is_not_lost_to_what_is_made_of_it(tmp_path: Path, refused: Refused) -> None:
-    """It may have taken a day."""
-    log, ping = tmp_path / "link.csv", tmp_path / "ping.txt"
-    write_link_log(measured(600), log)
-    ping.write_text(pings(1, 2, 3))
-    kept = log.read_text(), ping.read_text()
-    (tmp_path / "link.toml").symlink_to(log)
-    for told in (("fit", log, "--out", tmp_path / "link.toml"), ("import", ping, "--out", ping)):
-        assert f"--out {told[-1]}: that is the file to be read" in refused("link", *told)
-    assert (log.read_text(), ping.read_text()) == kept
 
 
 BAD = {

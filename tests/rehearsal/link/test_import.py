@@ -189,3 +189,14 @@ def test_what_unpacks_to_too_much_is_refused(
 def test_ticks_without_number_are_refused(tmp_path: Path) -> None:
     with pytest.raises(LinkFileError, match="give a longer --interval"):
         imported(tmp_path, irtt_of(rtt=1, apart=10**13), HOW._replace(interval=0.001))
+
+
+def test_a_measurement_is_not_lost_to_what_is_made_of_it(tmp_path: Path, refused: Refused) -> None:
+    """It may have taken a day."""
+    log, ping = tmp_path / "link.csv", tmp_path / "ping.txt"
+    for path in (log, ping):
+        path.write_text(pings(1, 2, 3))
+    (tmp_path / "link.toml").symlink_to(log)
+    for told in (("fit", log, "--out", tmp_path / "link.toml"), ("import", ping, "--out", ping)):
+        assert f"--out {told[-1]}: that is the file to be read" in refused("link", *told)
+    assert log.read_text() == ping.read_text() == pings(1, 2, 3)
