@@ -196,11 +196,13 @@ class Controller:
 
     def warning(self, control: Control) -> str | None:
         """What nobody who relies on the estimate may overlook; None while there is nothing."""
-        if self.config.guard and self._guard is None:
-            return (
-                f"{self.config.estimator} does not show what is wild: estimator.guard does nothing"
-            )
-        return self._estimator.warning(control.estimate)
+        return self._estimator.warning(control.estimate) or self._guards_nothing
+
+    @cached_property
+    def _guards_nothing(self) -> str | None:
+        idle = self.config.guard and self._guard is None
+        name = self.config.estimator
+        return f"{name} does not show what is wild: estimator.guard does nothing" if idle else None
 
     def innovation(self, control: Control) -> Innovation | None:
         """Of the newest measurement that came at this tick, as the estimator saw it."""

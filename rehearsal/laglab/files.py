@@ -66,14 +66,14 @@ def file_place(named: str, path: Path, read: Path | None = None) -> Path:
 
 
 def _refuse_nowhere(named: str, path: Path) -> None:
-    """No file can have NUL in its name, nobody can write down one that is not UTF-8, and nothing is
-    in a folder that is gone."""
+    """Nothing is in a folder that is gone; no file can have NUL in its name, and nobody can write
+    down one that is not UTF-8."""
+    if not path.is_absolute():
+        here()
     try:
         nameless = b"\0" in str(path).encode()
     except UnicodeEncodeError:
         nameless = True
-    if not path.is_absolute():
-        here()
     if nameless:
         raise PlaceError(f"{named} {str(path)!r}: that is no name in UTF-8: give it another")
 

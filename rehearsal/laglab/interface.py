@@ -12,7 +12,6 @@ from laglab.progress import progress_of
 from laglab.results.complete import Manner, complete, keep
 from laglab.results.place import place, withdrawn_unless_begun
 from laglab.results.run import Kept, Run
-from laglab.results.shadows import read_shadow, shadow_file
 from laglab.runs.ending import Ending
 from laglab.runs.rehearse import Transport, rehearse_inline
 from laglab.runs.whole import run_into
@@ -106,11 +105,7 @@ def _whole(ending: Ending, done: Run) -> Run:
 
 
 def _in_memory(done: Run) -> Run:
-    assert done.directory is not None
-    shadows = {
-        name: read_shadow(shadow_file(done.directory, name))
-        for name in done.scenario.estimator.compare
-    }
+    shadows = {name: done.shadow(name) for name in done.scenario.estimator.compare}
     tables = {name: done.table(name) for name in ROWS}
     kept = Kept(done.trace, tables, shadows)
     return Run(done.scenario, done.summary, None, kept)

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import laglab
+from laglab.results.columns import joined
 from laglab.results.replaying import draw_replays, replayed_run, replays_table
-from laglab.results.shadows import COLUMNS, read_shadow
+from laglab.results.shadows import COLUMNS, shadow_pieces
 from laglab.scenario import load
 from laglab_gateway import read_trace
 from laglab_protocol import Measurement, Sender, Tick, read_tlog, tlog_record
@@ -126,7 +127,8 @@ def test_a_tick_beyond_the_run_is_none_of_it(replay, run, stations_estimates, tm
 
 def test_the_page_of_a_replay_has_the_numbers_of_what_was_replayed(replay, run, tmp_path):
     assert replay(run / "robot.tlog", "--estimator", "ekf", "--out", tmp_path / "out") == 0
-    summary = replayed_run(run, {"ekf": read_shadow(tmp_path / "out" / "ekf.csv")}).summary
+    replayed = joined(shadow_pieces(tmp_path / "out" / "ekf.csv"))
+    summary = replayed_run(run, {"ekf": replayed}).summary
     assert summary.compare.keys() == {"delayed-ekf", "ekf"}
     assert summary.compare["delayed-ekf"] == summary.rms_error
     x = read_trace(run / "trace.csv")["x"]

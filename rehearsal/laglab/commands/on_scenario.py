@@ -64,10 +64,22 @@ OWN: dict[str, Own] = {
 }
 """Dotted key of a scenario → its option, which says what the key says."""
 OF_A_SIMULATED_ROBOT = (
-    *("pace", "speed", "plant.kind", "plant.fmi", "plant.fmu", "plant.integration"),
-    *("plant.options", "plant.parameters", "plant.inputs", "plant.outputs", "plant.start"),
-    *("plant.wheel_speed_max", "plant.motor_time_constant", "plant.wheel_radius_error"),
-    *("plant.track_error", "plant.wheel_slip"),
+    "pace",
+    "speed",
+    "plant.kind",
+    "plant.fmi",
+    "plant.fmu",
+    "plant.integration",
+    "plant.options",
+    "plant.parameters",
+    "plant.inputs",
+    "plant.outputs",
+    "plant.start",
+    "plant.wheel_speed_max",
+    "plant.motor_time_constant",
+    "plant.wheel_radius_error",
+    "plant.track_error",
+    "plant.wheel_slip",
 )
 """Keys, and tables, that nobody reads in front of a real one."""
 OF_SEVERAL_KEYS: dict[str, Any] = {

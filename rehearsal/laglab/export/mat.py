@@ -26,7 +26,7 @@ def write_mat(run: Run, file: BinaryIO) -> None:
     contents: dict[str, object] = {"scenario": run.scenario.to_toml()}
     units: dict[str, dict[str, str]] = {}
     for table in tables(run):
-        names = names_of(column.name for column in table.columns)
+        names = _names(column.name for column in table.columns)
         contents[table.name] = _struct(table, names)
         units[table.name] = {names[column.name]: column.unit for column in table.columns}
     contents["units"] = units
@@ -35,7 +35,7 @@ def write_mat(run: Run, file: BinaryIO) -> None:
     file.write(HEADER)
 
 
-def names_of(columns: Iterable[str]) -> dict[str, str]:
+def _names(columns: Iterable[str]) -> dict[str, str]:
     """What each column is called there: MATLAB's names are of ASCII letters, digits and
     underscores, 63 of them at most; what would then be called alike is numbered."""
     names: dict[str, str] = {}

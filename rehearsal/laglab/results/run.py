@@ -88,7 +88,7 @@ class Run:
         """All columns, each of shape (ticks + 1,). Raises NoRunError."""
         trace = joined(self.pieces())
         for name in self.scenario.estimator.compare:
-            trace = trace | shadowing(trace, self._shadow(name), name)
+            trace = trace | shadowing(trace, self.shadow(name), name)
         return trace
 
     @cached_property
@@ -204,6 +204,10 @@ class Run:
         """All rows of one of these files. Raises NoRunError."""
         return self.kept.tables[name] if self.kept else read_columns(self._file(name), ROWS[name])
 
+    def shadow(self, name: str) -> Shadow:
+        """All that an estimator said that shadowed the run. Raises NoRunError."""
+        return joined(self.shadow_pieces(name))
+
     def shadow_pieces(self, name: str) -> Iterator[Shadow]:
         """What an estimator said that shadowed the run, as many rows at a time as memory always has
         room for. Raises NoRunError."""
@@ -224,9 +228,6 @@ class Run:
         if self.directory is None:
             raise ResultsError("this run was kept in memory alone: it has no files")
         return self.directory
-
-    def _shadow(self, name: str) -> Shadow:
-        return self.kept.shadows[name] if self.kept else joined(self.shadow_pieces(name))
 
     @property
     def _is_short(self) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from laglab.files import whole_file
-from laglab.results.columns import Lines, beside, csv_pieces, joined, rising
+from laglab.results.columns import Lines, beside, csv_pieces, rising
 from laglab.results.numbers import AXES, COVARIANCE, RmsError, deviation
 from laglab.results.summary import Errors
 from laglab.runs.station_side import shadow_config
@@ -86,13 +86,9 @@ def collected(rows: Iterable[ShadowRow]) -> Shadow:
     return dict(zip(COLUMNS, table.T, strict=True))
 
 
-def read_shadow(path: Path) -> Shadow:
-    """What `kept_rows` wrote. Raises NoRunError when the file is no shadow's."""
-    return joined(shadow_pieces(path))
-
-
 def shadow_pieces(path: Path) -> Iterator[Shadow]:
-    """The same, piece by piece; there is one at least, if without a row. Raises NoRunError."""
+    """What `kept_rows` wrote, piece by piece; there is one at least, if without a row. Raises
+    NoRunError when the file is no shadow's."""
     yield _columns([])
     yield from csv_pieces(path, COLUMNS, _columns)
 

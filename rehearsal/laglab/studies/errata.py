@@ -69,14 +69,16 @@ def tried(job: Costing) -> tuple[Variant, Cost]:
     return job.variant, cost(Scenario.from_toml(job.scenario), job.variant, job.seeds)
 
 
+def noisy(scenario: Scenario, number: int) -> Scenario:
+    """With noise, and the seed of that number; 0 is its own. Raises ScenarioError."""
+    return changed(scenario, {"noise": True, "seed": scenario.seed + number})
+
+
 def cost(scenario: Scenario, variant: Variant, seeds: int) -> Cost:
     """Of one variant: without noise, and with it over the seeds."""
     errors, converged, _ = _trial(changed(scenario, {"noise": False}), variant)
-    noisy = [
-        _trial(changed(scenario, {"noise": True, "seed": scenario.seed + i}), variant)
-        for i in range(seeds)
-    ]
-    kept = [errors for errors, _, whole in noisy if whole and errors]
+    trials = [_trial(noisy(scenario, number), variant) for number in range(seeds)]
+    kept = [errors for errors, _, whole in trials if whole and errors]
     return Cost(variant.name, errors, converged, _mean(kept), seeds - len(kept), seeds)
 
 

@@ -9,8 +9,8 @@ from laglab.commands.on_scenario import on_scenario
 from laglab.commands.options import WorkersOption
 from laglab.extras import STEPPING, require
 from laglab.progress import tracked
-from laglab.scenario import Scenario, changed
-from laglab.studies.errata import VARIANTS, costs, costs_table
+from laglab.scenario import Scenario
+from laglab.studies.errata import VARIANTS, costs, costs_table, noisy
 from laglab.tables import terminal
 
 
@@ -26,6 +26,6 @@ def errata(
     """
     require(STEPPING)
     scenario.must_end()
-    changed(scenario, {"seed": scenario.seed + seeds - 1})  # the last run's is one, too
+    noisy(scenario, seeds - 1)  # the last is one, too
     got = dict(tracked(costs(scenario, seeds, workers), len(VARIANTS), "errata", "version"))
     terminal().print(costs_table(scenario, [got[variant] for variant in VARIANTS]))
