@@ -4,7 +4,7 @@ import math
 from typing import TypeAlias
 
 from laglab_conformance.framing import RECEIVING, SENDING, SIGNING
-from laglab_conformance.items import SOON, Item, reacts_soon, refused
+from laglab_conformance.items import SOON, Item, reacts_soon, refused, wrongly_told
 from laglab_conformance.session import DoesNotApplyError, NoReactionError, Session
 from laglab_protocol import (
     NO_COMMAND,
@@ -171,14 +171,19 @@ def _backwards(session: ControllerSession) -> str | None:
 
 
 def _ends(session: ControllerSession) -> str | None:
-    """It answers END once with the same."""
-    end, before = End(session.tick - 1, EndReason.COMPLETED), len(session.heard)
+    """It answers END once with the same, and says nothing of an end before, nor commands after."""
+    early, before = session.ended, len(session.heard)
+    end = End(session.tick - 1, EndReason.COMPLETED)
     session.send(end)
     session.wait_for(End, session.waits.react)
     session.quiet()
     answers = session.told(End, before)
+    if early:
+        return f"it said {early}, and nobody had ended its run"
     if len(answers) != 1:
         return f"answered {len(answers)} times"
+    if session.goes_on(Command, before):
+        return "it goes on after END"
     return None if answers[0] == end else f"{end} is answered with {answers[0]}"
 
 
@@ -195,9 +200,7 @@ def _asks(session: ControllerSession) -> str | None:
 
 def _tells_settings(session: ControllerSession) -> str | None:
     told = session.told(Settings)
-    if not told:
-        return "it calls without LAGLAB_SETTINGS"
-    return None if told[0].sample_time > 0 else f"its sample time is {told[0].sample_time}"
+    return wrongly_told(told[0]) if told else "it calls without LAGLAB_SETTINGS"
 
 
 ITEMS: list[Item[ControllerSession]] = [

@@ -13,7 +13,7 @@ SILENCE = 3.0
 
 def _answers(session: RobotSession) -> str | None:
     """With the same reason, and then no more ticks."""
-    end = End(session.tick, EndReason.INTERRUPTED)
+    end, before = End(session.tick, EndReason.INTERRUPTED), len(session.heard)
     session.send(end)
     session.over = True
     answer = session.wait_for(End, session.waits.react)
@@ -22,7 +22,7 @@ def _answers(session: RobotSession) -> str | None:
     if answer.reason != end.reason:
         return f"END with reason {end.reason} is answered with {answer.reason}"
     session.quiet()
-    return "it goes on after END" if session.wait_for(Tick, session.refusal) else None
+    return "it goes on after END" if session.goes_on(Tick, before) else None
 
 
 def _ends(session: RobotSession) -> list[End]:

@@ -179,8 +179,10 @@ def _old(session: Session, forged: Forged) -> bytes:
 
 
 def _signs(session: Session) -> str | None:
-    _key(session)
     bad = _badly_signed(session)
+    if session.key is None and bad:
+        return f"not so that it can be checked: {bad}: give the kit its --key"
+    _key(session)
     return f"not so: {bad}" if bad else None
 
 

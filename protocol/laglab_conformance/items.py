@@ -9,7 +9,7 @@ from typing import Generic, TypeVar
 from laglab_conformance.forge import Forged
 from laglab_conformance.report import Mark, Result
 from laglab_conformance.session import DoesNotApplyError, NoReactionError, Session, Waits
-from laglab_protocol import End, EndpointError, EndReason
+from laglab_protocol import DIALECT_VERSION, End, EndpointError, EndReason, Settings
 
 SOON = 0.25
 """[s] Within this time a peer in lock-step reacts."""
@@ -91,6 +91,15 @@ def reacts_soon(session: Session) -> str | None:
         times.append(time.monotonic() - started)
     median = statistics.median(times)
     return f"median {median:.3f} s" if median > SOON else None
+
+
+def wrongly_told(told: Settings) -> str | None:
+    """What is wrong with its settings, whoever's they are."""
+    if not told.sample_time > 0:
+        return f"its sample time is {told.sample_time}"
+    if told.dialect != DIALECT_VERSION:
+        return f"it speaks version {told.dialect} of the dialect, the kit {DIALECT_VERSION}"
+    return None
 
 
 S = TypeVar("S", bound=Session)

@@ -62,6 +62,16 @@ class LockstepSession(RobotSession):
         return None
 
 
+def _begins_at_zero(session: LockstepSession) -> str | None:
+    first = session.told(Tick)[0].tick
+    if first == 0:
+        return None
+    return (
+        f"tick {first} came first; where another station had begun its run before, "
+        f"wait {SILENCE:.0f} s, so that it is given up"
+    )
+
+
 def _repeats(session: LockstepSession) -> str | None:
     """Two more of the same tick, while nobody answers."""
     for _ in range(2):
@@ -113,6 +123,7 @@ def _earlier(session: LockstepSession, _: Forged) -> bytes:
 
 ITEMS: list[Item[LockstepSession]] = [
     BEGINS,
+    Item("lock-step", "its run begins with tick 0", _begins_at_zero),
     Item("lock-step", "an unanswered tick is repeated", _repeats),
     *RECEIVING,
     Item("lock-step", "it goes from tick to tick", _one_by_one),

@@ -9,7 +9,7 @@ from pathlib import Path
 from msgspec.structs import replace
 
 from laglab_conformance.forge import Forged
-from laglab_conformance.items import Item, refused
+from laglab_conformance.items import Item, refused, wrongly_told
 from laglab_conformance.session import DoesNotApplyError, M, NoReactionError, Session, Waits
 from laglab_protocol import (
     ROBOT_COMPONENT,
@@ -180,8 +180,7 @@ def _meant_for(system: int, session: RobotSession, _: Forged) -> bytes:
 
 def _settings(session: RobotSession) -> str | None:
     """It answers LAGLAB_SETTINGS with its own."""
-    told = session.ask(Settings(math.nan), Settings)
-    return None if told.sample_time > 0 else f"its sample time is {told.sample_time}"
+    return wrongly_told(session.ask(Settings(math.nan), Settings))
 
 
 def _recalls(session: RobotSession) -> str | None:

@@ -122,6 +122,16 @@ class Session(ABC):
         messages = (frame.message for frame in self.heard[since:])
         return [message for message in messages if isinstance(message, kind)]
 
+    def goes_on(self, kind: type[Message], since: int) -> bool:
+        """Whether this kind came after its END, which is among the frames from number `since` on;
+        by the frames' own numbers, for a line may bring after it what was said before."""
+        heard = self.heard[since:]
+        at = [isinstance(frame.message, End) for frame in heard].index(True)
+        return any(
+            isinstance(frame.message, kind) and (frame.sequence - heard[at].sequence) & 0xFF < 128
+            for frame in heard[at + 1 :]
+        )
+
     def wait_for(self, kind: type[M], seconds: float) -> M | None:
         """The next message of this kind, None when none comes in time."""
         found = self.listen(seconds, lambda frame: isinstance(frame.message, kind))

@@ -11,6 +11,7 @@ from laglab_conformance.robot import (
     batches,
     creep,
     measurements,
+    newest_measurement,
 )
 from laglab_conformance.session import DoesNotApplyError
 from laglab_protocol import NO_COMMAND, Applied, Measurement, Tick
@@ -97,6 +98,7 @@ def _echoes(session: RobotSession) -> str | None:
     told = creep(session)
     if told is not None and told.command_tick != stamp:
         return f"what command {stamp} commanded is told of command {told.command_tick}"
+    newest_measurement(session)
     for each in measurements(session):
         others = NO_COMMAND < each.command_tick < first
         if not NO_COMMAND <= each.command_tick < max(each.tick, 0):

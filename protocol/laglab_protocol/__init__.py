@@ -55,6 +55,7 @@ from laglab_protocol.messages.geographic import (
 )
 from laglab_protocol.messages.layout import LAYOUT_OF_ID, layout_of
 from laglab_protocol.messages.loop import (
+    DIALECT_VERSION,
     LONGEST_PLAN,
     NO_COMMAND,
     NO_PROBE,
@@ -135,6 +136,7 @@ from laglab_protocol.tlog import read_tlog, tlog_record
 __all__ = [
     "BEGUN_AGAIN",
     "BITS_PER_BYTE",
+    "DIALECT_VERSION",
     "EVERY_MESSAGE",
     "LAYOUT_OF_ID",
     "LEAST_BYTES",

@@ -19,6 +19,8 @@ BOTH = {
     "skips numbers": "it numbers its frames one by one",
     "sends zeros": "it leaves trailing zeros at home",
     "keeps its settings to itself": "it tells its settings",
+    "speaks another dialect": "it tells its settings",
+    "signs without a key": "it signs what it sends",
 }
 SIGNED = {
     "believes the unsigned": "unsigned frames are refused",
@@ -27,6 +29,8 @@ SIGNED = {
     "signs not all": "it signs what it sends",
 }
 ROBOT = BOTH | {
+    "begins late": "its run begins with tick 0",
+    "ticks once after END": "it answers END",
     "never repeats": "an unanswered tick is repeated",
     "measures again for a repeat": "a repeat brings the same messages",
     "miscounts measurements": "the tick counts its measurements",
@@ -64,6 +68,7 @@ ROBOT = BOTH | {
     "gives another reason": "it answers END",
 }
 LOCKSTEP_ALONE = {
+    "begins late",
     "never repeats",
     "measures again for a repeat",
     "goes back to earlier commands",
@@ -98,5 +103,7 @@ CONTROLLER = BOTH | {
     "is slow": "it answers within 0.25 s",
     "says END twice": "it answers END once",
     "ignores END": "it answers END once",
+    "ends by itself": "it answers END once",
+    "commands after END": "it answers END once",
     "gives another reason": "it answers END once",
 }

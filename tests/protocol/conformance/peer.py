@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Self
 
 from laglab_conformance.forge import Forged
-from laglab_protocol import Codec, Endpoint, Frame, Heartbeat, Message, Sender
+from laglab_protocol import Codec, Endpoint, Frame, Heartbeat, Message, Sender, Settings, Signer
 
 from .faulty_intake import INTAKE
 
@@ -80,8 +80,15 @@ class Peer(threading.Thread):
             time.sleep(0.3)  # more than the kit allows
         raw = b"".join(self.framed(message) for message in messages)
         self.endpoint.send(raw + (b"?" if self.fault == "sends stray bytes" else b""))
+        if self.fault == "signs without a key":
+            stream = 1, self.system, self.component
+            signed = Sender(self.system, self.component, Signer(bytes(32), stream))
+            self.endpoint.send(signed.frame(ALIVE))
         if self.fault == "signs not all":
             self.endpoint.send(Sender(self.system, self.component).frame(ALIVE))
+
+    def settings(self) -> Settings:
+        return Settings(0.01, dialect=99 if self.fault == "speaks another dialect" else 3)
 
     def framed(self, message: Message) -> bytes:
         raw = self.codec.sender.frame(message)

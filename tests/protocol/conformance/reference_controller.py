@@ -14,7 +14,6 @@ from laglab_protocol import (
     Plan,
     Planned,
     Recall,
-    Settings,
     Tick,
 )
 
@@ -41,7 +40,7 @@ class Controller(Peer):
     def silence(self) -> None:
         if self.last is None:
             secret = self.fault == "keeps its settings to itself"
-            self.send(ALIVE, *([] if secret else [Settings(0.01)]))
+            self.send(ALIVE, *([] if secret else [self.settings()]))
 
     def hear(self, message: Message) -> None:
         match message:
@@ -55,6 +54,8 @@ class Controller(Peer):
                 reason = 3 if self.fault == "gives another reason" else message.reason
                 times = 2 if self.fault == "says END twice" else 1
                 self.send(*[replace(message, reason=reason)] * times)
+                if self.fault == "commands after END":
+                    self.answer(message.tick)
                 self.left.set()
 
     def hear_tick(self, message: Tick) -> None:
@@ -85,6 +86,8 @@ class Controller(Peer):
         said = [estimate, *plans, command]
         said = [command, estimate, *plans] if self.fault == "commands first" else said
         self.send(*said, *(said if twice else []))
+        if self.fault == "ends by itself" and tick == 20:
+            self.send(End(0, 3))
 
     def plan(self, tick: int) -> list[Plan]:
         """To stand still."""

@@ -73,8 +73,8 @@ class Robot(Peer):
         self.say_tick(self.tick)
 
     def begin(self) -> None:
-        self.tick = 0
-        self.say_tick(0)
+        self.tick = 7 if self.fault == "begins late" else 0
+        self.say_tick(self.tick)
 
     def say_tick(self, tick: int) -> None:
         x = float(self.repeats) if self.fault == "measures again for a repeat" else 0.0
@@ -124,6 +124,8 @@ class Robot(Peer):
         self.send(*[End(tick, reason)] * (2 if self.fault == "says END twice" else 1))
         if self.fault == "goes on after END":
             return
+        if self.fault == "ticks once after END":
+            self.say_tick(self.tick or 0)
         self.wait()
         if not self.begins_anew:
             self.left.set()
@@ -190,7 +192,7 @@ class Robot(Peer):
                 v = self.speed + (self.fault == "recalls amiss")
                 self.owed = Applied((v,) + (0.0,) * 11, (0.0,) * 12, message.first, 1)
             case Settings() if self.fault != "keeps its settings to itself":
-                self.send(Settings(0.01))
+                self.send(self.settings())
             case Ping() if self.fault != "does not answer pings":
                 self.send(replace(message, target_system=200, target_component=190))
 

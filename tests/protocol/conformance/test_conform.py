@@ -161,6 +161,7 @@ def test_a_robot_that_measures_nothing_is_told_so() -> None:
     report = robot_with("measures nothing")
     assert len(report.results) == len(lockstep.ITEMS)
     assert "no measurement came" in report.table()
+    assert not report.conforms
 
 
 def test_what_the_kit_makes_nothing_of_fails_its_item_alone() -> None:
