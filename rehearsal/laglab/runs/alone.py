@@ -9,7 +9,7 @@ from laglab.runs.errors import CUT_SHORT, SIDE_ERRORS
 from laglab.runs.looping import looping
 from laglab.runs.robot_side import OpenRobot
 from laglab_gateway import Outcome, Surroundings
-from laglab_protocol import EndReason, Listener, SettingsError
+from laglab_protocol import EndReason, Listener
 from laglab_station import Onlooker, Station, run_station
 
 
@@ -76,10 +76,9 @@ def _answered(
 
 
 def _cut_short(error: Exception, clock: LoopClock, warnings: list[str]) -> Ending:
-    begun = clock.seconds > 0 or isinstance(error, CUT_SHORT)
     return Ending(
         problem=str(error),
-        begun=begun and not isinstance(error, SettingsError),
+        begun=clock.seconds > 0 or isinstance(error, CUT_SHORT),
         loop_seconds=clock.seconds,
         warnings=tuple(warnings),
     )
