@@ -31,6 +31,16 @@ class PlantSilentError(GatewayError):
         )
 
 
+class PlantWaitsError(GatewayError):
+    """A real robot repeats its tick until it is answered: it has no clock of its own."""
+
+    def __init__(self, link: str, tick: int, seconds: float) -> None:
+        super().__init__(
+            f"{link}: the robot has repeated its tick {tick} for {seconds:.1f} s: it waits for "
+            "each command, in lock-step: give it a clock of its own (a gateway: --pace realtime)"
+        )
+
+
 class TraceError(GatewayError):
     """A trace file cannot be written or is not a trace."""
 

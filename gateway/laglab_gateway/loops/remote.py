@@ -6,7 +6,7 @@ from contextlib import contextmanager, suppress
 from select import select
 from time import monotonic
 
-from laglab_gateway.errors import PlantSilentError
+from laglab_gateway.errors import PlantSilentError, PlantWaitsError
 from laglab_gateway.loops.conversation import END_TRIES, Conversation
 from laglab_gateway.loops.surroundings import READ_ON, Patience, Served, Surroundings, served
 from laglab_gateway.relay import Relay
@@ -20,6 +20,7 @@ from laglab_protocol import (
     Parties,
     Refusals,
     Settings,
+    Tick,
     differences,
     refuse_other_sample_time,
     stranger_as_robot,
@@ -27,6 +28,10 @@ from laglab_protocol import (
 
 GREETED_AGAIN = 0.3
 """[s] A robot that says nothing for so long may have begun again, and wait to be greeted."""
+
+
+REPEATED = 4
+"""So often no link brings the same tick by itself: a robot says it again."""
 
 
 class RobotLine:
@@ -39,6 +44,8 @@ class RobotLine:
         self._listener = listener
         self._refusals = Refusals(monotonic(), "--plant-key")
         self._heard = self._greeted = monotonic()
+        self._repeated = 0
+        """How often the newest tick came again."""
         self._stranger: str | None = None
         """Who ticks and is not our robot, until that is told; then empty."""
         self._compared: Settings | None = None
@@ -79,8 +86,10 @@ class RobotLine:
         """Each tick of the robot that begins with what has arrived."""
         for frame in self._listen(0.0):
             if self._relay.hear_robot(frame):
-                self._heard = monotonic()
+                self._heard, self._repeated = monotonic(), 0
                 yield
+            elif isinstance(frame.message, Tick) and frame.message.tick == self._relay.tick:
+                self._repeated += 1
 
     def _listen(self, timeout: float) -> list[Frame]:
         heard = self._listener.listen(timeout)
@@ -97,10 +106,14 @@ class RobotLine:
         return monotonic() - self._heard > self._patience.robot_silence
 
     def check_silence(self) -> None:
-        """Raises PlantSilentError when the last tick was longer ago than allowed."""
-        if self.seems_silent:
-            since = self._relay.tick if self._relay.under_way else None
-            raise PlantSilentError(self._link.name, since, monotonic() - self._heard)
+        """Raises PlantSilentError when the last tick was longer ago than allowed, PlantWaitsError
+        when it was said again and again since."""
+        if not self.seems_silent:
+            return
+        seconds, tick = monotonic() - self._heard, self._relay.tick
+        if self._relay.under_way and self._repeated >= REPEATED:
+            raise PlantWaitsError(self._link.name, tick, seconds)
+        raise PlantSilentError(self._link.name, tick if self._relay.under_way else None, seconds)
 
     def not_taken(self) -> Iterator[str]:
         """Now and then: whose frames are not taken, or why not, and how to mend that."""
@@ -165,6 +178,7 @@ def serve_remote(relay: Relay, robot: Listener, around: Surroundings) -> Served:
     Raises:
         StationSilentError: the station never came, or fell silent.
         PlantSilentError: the robot does not speak our dialect, or fell silent.
+        PlantWaitsError: it has no clock of its own.
         SettingsError: one of them ticks at another pace.
         EndpointError: one of the two links broke.
         TraceError: what happened could not be kept.

@@ -2,7 +2,7 @@
 
 from laglab_control import ControlError, PluginFailedError
 from laglab_fmu import FmuError
-from laglab_gateway import GatewayError, PlantSilentError, StationSilentError
+from laglab_gateway import GatewayError, PlantSilentError, PlantWaitsError, StationSilentError
 from laglab_protocol import FarEndGoneError, FarEndStalledError, ProtocolError
 from laglab_station import RobotSilentError, StationError
 
@@ -12,6 +12,7 @@ CUT_SHORT = (
     StationSilentError,
     RobotSilentError,
     PlantSilentError,
+    PlantWaitsError,
     FarEndGoneError,
     FarEndStalledError,
     PluginFailedError,
