@@ -44,6 +44,10 @@ WRONG = [
         ["run", "fig6", "--fmi", "2", "--set", "plant.kind=mine:R"],
         "plant.fmi: mine:R is as it was",
     ),
+    (
+        ["controller", "track-eight", "--goal-tolerance", "1"],
+        "law.goal_tolerance: the law tracking",
+    ),
     (["run", "fig6", "--seed", "-1"], "seed"),
     (["run", "fig6", "--transport", "pigeon"], "'--transport'"),
     (["run", "fig6", "--colour", "red"], "--colour"),

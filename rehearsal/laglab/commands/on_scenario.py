@@ -82,6 +82,8 @@ OF_A_SIMULATED_ROBOT = (
     "plant.wheel_slip",
 )
 """Keys, and tables, that nobody reads in front of a real one."""
+OF_THE_POLAR_LAW = ("law.gamma", "law.lambda", "law.h", "law.goal_tolerance")
+"""Keys that no other law reads."""
 OF_SEVERAL_KEYS: dict[str, Any] = {
     "estimator": EstimatorsOption,
     "timeline": Annotated[
@@ -155,10 +157,19 @@ def _before_real_robot(overrides: Overrides, address: str) -> Overrides:
 def _loaded(name: str, overrides: Overrides) -> Scenario:
     """Raises ScenarioError also where nobody would read what somebody asks for."""
     loaded = load(name, overrides, say)
-    if "plant.fmi" in overrides and not loaded.plant.ships:
-        called = loaded.plant.called
-        raise ScenarioError(f"plant.fmi: {called} is as it was brought: leave --fmi out")
+    for key, why in _idle(loaded):
+        if key in overrides:
+            raise ScenarioError(f"{key}: {why}")
     return loaded
+
+
+def _idle(scenario: Scenario) -> Iterator[tuple[str, str]]:
+    """Keys that nobody reads in such a scenario: why, and what to do."""
+    if not scenario.plant.ships:
+        yield "plant.fmi", f"{scenario.plant.called} is as it was brought: leave --fmi out"
+    if scenario.law.kind != "polar":
+        for key in OF_THE_POLAR_LAW:
+            yield key, f"the law {scenario.law.kind} knows none: leave it out"
 
 
 def on_scenario(
