@@ -49,6 +49,11 @@ from laglab_protocol import EndReason
 from laglab_station import StationReport, heard, read_session
 
 CONVERGED = "converged", "did not converge"
+AT_ONCE = {
+    EndReason.FAILED: "the other side failed before the first tick was over",
+    EndReason.DISPLACED: "another station has the robot: end that one first",
+}
+"""What ended a run of which there is no tick."""
 THE_STATIONS = "the station's filter"
 """A gateway alone does not know by which its station estimates."""
 
@@ -137,7 +142,8 @@ def nothing_recorded(ending: Ending, otherwise: str) -> BaseException:
         return KeyboardInterrupt()
     if not ending.begun:
         return RefusedError(ending.problem)
-    return RunError(ending.problem or otherwise)
+    told = AT_ONCE.get(ending.outcome.reason) if ending.outcome else None
+    return RunError(ending.problem or told or otherwise)
 
 
 def _shadowed(scenario: Scenario, name: str, directory: Path, failed: list[str]) -> Errors | None:
