@@ -20,5 +20,6 @@ def fmus(tmp_path_factory: pytest.TempPathFactory, library: Path) -> Path:
     rover(folder / "rover.fmu", library, [MODEL_EXCHANGE, CO_SIMULATION])
     rover(folder / "rover-me.fmu", library, [MODEL_EXCHANGE])
     in_python("pythonfmu3", "barrow", folder)
+    in_python("pythonfmu3", "sled", folder)
     in_python("pythonfmu", "tray", folder)
     return folder

@@ -6,12 +6,10 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from fmpy.model_description import ModelVariable
 
 from laglab_fmu import CallError, FmuFileError, fmu_path
 from laglab_fmu.foreign import FmuFile, ForeignRobot, Wiring, check
 from laglab_fmu.foreign.steps import substeps
-from laglab_fmu.foreign.values import starts
 
 from .building import CO_SIMULATION, FIXED_STEP, MODEL_EXCHANGE, rover
 
@@ -157,17 +155,6 @@ def test_steps_of_which_a_sample_has_too_many_are_refused(
     path = rover(tmp_path / "rover.fmu", library, [FIXED_STEP], experiment={"stepSize": step})
     with pytest.raises(FmuFileError, match=r"it steps by \S+ s .* more than 1000000"):
         check(FmuFile.read(path), ROVER, TS)
-
-
-def test_one_start_value_is_that_of_all_elements() -> None:
-    def variable(start: str | None, *shape: int) -> ModelVariable:
-        return ModelVariable("pose", 1, start=start, shape=shape)
-
-    assert starts(variable("2.5", 2, 2)) == [2.5] * 4
-    assert starts(variable("1 2", 2)) == [1.0, 2.0]
-    assert starts(variable(None, 2)) == [0.0, 0.0]
-    with pytest.raises(FmuFileError, match="pose starts at '1 x', which is no number"):
-        starts(variable("1 x", 2))
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@
 
 from laglab_fmu.foreign.file import FmuFile
 from laglab_fmu.foreign.robot import ForeignRobot
-from laglab_fmu.foreign.wiring import REAL, Value, Wiring, check, size
+from laglab_fmu.foreign.start_values import check
+from laglab_fmu.foreign.wiring import REAL, Value, Wiring, size
 
 __all__ = ["REAL", "FmuFile", "ForeignRobot", "Value", "Wiring", "check", "size"]

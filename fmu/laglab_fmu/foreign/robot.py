@@ -12,15 +12,10 @@ from laglab_fmu.errors import CallError
 from laglab_fmu.foreign.exchange import ASKS_TO_END, Integrator
 from laglab_fmu.foreign.file import FmuFile
 from laglab_fmu.foreign.instance import LastLines, initialize, instance
+from laglab_fmu.foreign.start_values import check, parameter_values, start_values
 from laglab_fmu.foreign.steps import substeps
-from laglab_fmu.foreign.values import Reader, Writer, starting
-from laglab_fmu.foreign.wiring import (
-    Wiring,
-    check,
-    input_elements,
-    output_elements,
-    start_elements,
-)
+from laglab_fmu.foreign.values import Reader, Writer
+from laglab_fmu.foreign.wiring import Wiring, input_elements, output_elements
 
 FATAL = 4
 STATUS = ("ok", "warning", "discard", "error", "fatal", "pending")
@@ -54,13 +49,13 @@ class ForeignRobot:
             elements = output_elements(file, wiring.outputs)
             self._names = [element.name for element in elements]
             self._reader = Reader(self._fmu, file.version, elements)
-            self._writer = Writer(self._fmu, file.version, input_elements(file, wiring.inputs))
+            inputs, told = input_elements(file, wiring.inputs), parameter_values(file, wiring)
+            self._writer = Writer(self._fmu, file.version, inputs, told)
             self._begin(start)
             self._stack = stack.pop_all()
 
     def _begin(self, start: Sequence[float]) -> None:
-        elements = start_elements(self._file, self._wiring.start)
-        values = {**self._wiring.parameters, **starting(elements, start)}
+        values = start_values(self._file, self._wiring, start)
         self._tick = 0
         self._told: Sequence[float] = ()
         try:

@@ -5,8 +5,8 @@ from typing import Any, NamedTuple
 
 from fmpy.model_description import ModelVariable
 
-from laglab_fmu.errors import FmuFileError
-from laglab_fmu.foreign.wiring import Element, Value, size
+from laglab_fmu.foreign.start_values import starts
+from laglab_fmu.foreign.wiring import Element, Scalar, size
 
 ENUMERATION = {2: "Integer", 3: "Int64"}
 """By the version of FMI: enumerations have no getter of their own."""
@@ -72,12 +72,15 @@ class Reader:
 class Writer:
     """Writes elements, in their order; other elements of an array keep their start value."""
 
-    def __init__(self, fmu: Any, version: int, elements: Sequence[Element]) -> None:
+    def __init__(
+        self, fmu: Any, version: int, elements: Sequence[Element], told: Mapping[str, list[Scalar]]
+    ) -> None:
         self.variables: dict[str, str] = {}
         """FMI function → whose values it sets."""
         self._calls = []
         for group in _groups(elements, version):
-            values = [value for variable in group.variables for value in starts(variable)]
+            whole = (told.get(each.name) or starts(each) for each in group.variables)
+            values = [value for each in whole for value in each]
             places = [
                 (i, group.place(element))
                 for i, element in enumerate(elements)
@@ -93,34 +96,3 @@ class Writer:
             for i, place in places:
                 values[place] = numbers[i]
             put(references, values)
-
-
-def starts(variable: ModelVariable) -> list[float]:
-    """The values that a variable has at first, as its description says; 0 where it does not.
-
-    Raises FmuFileError: they are none.
-    """
-    said = str(variable.start or "").split()
-    many = size(variable)
-    if len(said) == 1:
-        said *= many  # FMI 3: one for all
-    try:
-        return [float(each) for each in said] if len(said) == many else [0.0] * many
-    except ValueError as error:
-        raise FmuFileError(
-            f"{variable.name} starts at {variable.start!r}, which is no number: mend that in the "
-            "FMU's modelDescription.xml"
-        ) from error
-
-
-def starting(elements: Sequence[Element], numbers: Sequence[float]) -> Mapping[str, Value]:
-    """Start values by the FMU's names; an array is set whole."""
-    arrays: dict[str, list[float]] = {}
-    values: dict[str, Value] = {}
-    for element, number in zip(elements, numbers, strict=True):
-        name = element.variable.name
-        if element.variable.shape:
-            arrays.setdefault(name, starts(element.variable))[element.offset] = number
-        else:
-            values[name] = number
-    return {**values, **arrays}

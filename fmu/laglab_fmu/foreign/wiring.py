@@ -11,9 +11,9 @@ from fmpy.model_description import ModelVariable
 
 from laglab_fmu.errors import WiringError
 from laglab_fmu.foreign.file import FmuFile
-from laglab_fmu.foreign.steps import substeps, tolerance
 
-Value = float | bool | str | Sequence[float]
+Scalar = float | bool | str
+Value = Scalar | Sequence[Scalar]
 """A parameter's; whole numbers too."""
 REAL = ("Real", "Float64", "Float32")
 NUMBERS = (*REAL, "Integer", "Enumeration", "Boolean")
@@ -48,9 +48,9 @@ def size(variable: ModelVariable) -> int:
 
 def input_elements(file: FmuFile, names: Mapping[str, str]) -> list[Element]:
     """What the FMU can be told while it runs. Raises WiringError, naming the key."""
-    _refuse_twice("inputs", names)
-    found = [_found(file, f"inputs.{ours}", theirs) for ours, theirs in names.items()]
-    for ours, element in zip(names, found, strict=True):
+    found = _all_found(file, "inputs", names)
+    _refuse_twice("inputs", found)
+    for ours, element in found.items():
         variable = element.variable
         settable = variable.causality == "input" or variable.variability == "tunable"
         if not settable or variable.type not in REAL:
@@ -58,16 +58,16 @@ def input_elements(file: FmuFile, names: Mapping[str, str]) -> list[Element]:
                 f"inputs.{ours}: {element.name} of {file.path.name} is no real input, but "
                 f"{_what(variable)}; its inputs: {_listed(file, 'input')}"
             )
-    return found
+    return list(found.values())
 
 
 def output_elements(file: FmuFile, names: Mapping[str, str]) -> list[Element]:
     """What the FMU can be asked. Raises WiringError, naming the key."""
-    measured = {ours: theirs for ours, theirs in names.items() if ours.endswith("_meas")}
+    found = _all_found(file, "outputs", names)
+    measured = {ours: each for ours, each in found.items() if ours.endswith("_meas")}
     _refuse_twice("outputs", measured)  # by itself: a pose may be measured exactly
-    _refuse_twice("outputs", {ours: names[ours] for ours in names if ours not in measured})
-    found = [_found(file, f"outputs.{ours}", theirs) for ours, theirs in names.items()]
-    for ours, element in zip(names, found, strict=True):
+    _refuse_twice("outputs", {ours: found[ours] for ours in found if ours not in measured})
+    for ours, element in found.items():
         kind = element.variable.type
         if element.variable.causality == "input":
             raise WiringError(
@@ -79,44 +79,54 @@ def output_elements(file: FmuFile, names: Mapping[str, str]) -> list[Element]:
                 f"outputs.{ours}: {element.name} of {file.path.name} is no number, but "
                 f"{_what(element.variable)}; its outputs: {_listed(file, 'output')}"
             )
+    return list(found.values())
+
+
+def start_elements(file: FmuFile, names: Mapping[str, str]) -> dict[str, Element]:
+    """What the FMU can be told of its start. Raises WiringError, naming the key."""
+    found = _all_found(file, "start", names)
+    _refuse_twice("start", found)
+    for ours, element in found.items():
+        _refuse_sizes(file, f"start.{ours}", element)
     return found
 
 
-def start_elements(file: FmuFile, names: Mapping[str, str]) -> list[Element]:
-    """What the FMU can be told of its start. Raises WiringError, naming the key."""
-    _refuse_twice("start", names)
-    return [_found(file, f"start.{ours}", theirs) for ours, theirs in names.items()]
+def parameter_elements(file: FmuFile, values: Mapping[str, Value]) -> list[Element]:
+    """What the FMU can be told before it starts. Raises WiringError, naming the key."""
+    found = [_found(file, "parameters", name) for name in values]
+    for element in found:
+        _refuse_sizes(file, "parameters", element)
+    return found
 
 
-def _refuse_twice(table: str, names: Mapping[str, str]) -> None:
+def _refuse_sizes(file: FmuFile, key: str, element: Element) -> None:
+    """Raises WiringError: what sizes arrays stays as it is, the arrays are read and set by it."""
+    if element.variable.causality == "structuralParameter":
+        raise WiringError(
+            f"{key}: {element.name} of {file.path.name} is a structural parameter, which sizes "
+            f"arrays, and stays at {element.variable.start}: export the FMU with another"
+        )
+
+
+def _refuse_twice(table: str, found: Mapping[str, Element]) -> None:
     """Raises WiringError: one variable cannot be two things."""
-    ours: dict[str, str] = {}
-    for key, theirs in names.items():
-        if first := ours.get(theirs):
-            raise WiringError(f"{table}.{key}: {theirs} is {table}.{first} already")
-        ours[theirs] = key
+    ours: dict[tuple[str, int], str] = {}
+    for key, element in found.items():
+        place = element.variable.name, element.offset
+        if first := ours.get(place):
+            raise WiringError(f"{table}.{key}: {element.name} is {table}.{first} already")
+        ours[place] = key
 
 
-def check_parameters(file: FmuFile, values: Mapping[str, Value]) -> None:
-    """Raises WiringError: there is no such variable."""
-    for name in values:
-        _found(file, "parameters", name)
-
-
-def check(file: FmuFile, wiring: Wiring, sample_time: float) -> None:
-    """All that can be known to be wrong before the FMU runs. Raises FmuFileError."""
-    if file.interface() == "model exchange":
-        tolerance(file)
-    substeps(file, sample_time)
-    input_elements(file, wiring.inputs)
-    output_elements(file, wiring.outputs)
-    start_elements(file, wiring.start)
-    check_parameters(file, wiring.parameters)
+def _all_found(file: FmuFile, table: str, names: Mapping[str, str]) -> dict[str, Element]:
+    return {ours: _found(file, f"{table}.{ours}", theirs) for ours, theirs in names.items()}
 
 
 def _found(file: FmuFile, key: str, name: str) -> Element:
     variables = file.variables
     if name in variables:
+        if size(variables[name]) == 0:
+            raise WiringError(f"{key}: {name} of {file.path.name} is an array without elements")
         if size(variables[name]) > 1 and key != "parameters":
             last = ",".join(str(each - 1) for each in variables[name].shape)
             raise WiringError(

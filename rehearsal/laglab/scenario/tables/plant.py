@@ -42,10 +42,10 @@ def _flat(tables: object, above: str = "") -> Any:
     return flat
 
 
-ParameterValue = Switch | Whole | Number | str | tuple[Number, ...]
+ParameterValue = Switch | Whole | Number | str | tuple[Switch | Number, ...]
 ParameterValues = Annotated[
     dict[str, ParameterValue],
-    saying("a table of names and numbers, true or false, texts or lists of numbers"),
+    saying("a table of names and numbers, true or false, texts, or lists of the first two"),
     BeforeValidator(_flat),
     AfterValidator(OptionsTable),
 ]
