@@ -22,6 +22,8 @@ WRONG = {
     "[grid]\nlink.command_delay = 3": "grid: link.command_delay: must be a list of values, not 3",
     "[grid]\nnoise = [true, 3]": "grid: noise: must have values of one kind",
     "[grid]\nnoise = [true, true]": "grid: noise: must have each value once",
+    '[grid]\n"link.command" = [{ loss = 0.1 }]\n"link.command.loss" = [0.2]': "command.loss: "
+    "link.command, too, says what it is: leave one out",
     "[grid]\nseed = [1]": "the seeds of a study are said by `seeds`",
     '[grid]\n"estimator.kind" = ["popf", "nonsense"]': "must be one of raw, ekf",
     "[grid]\nduration = [inf]": "duration: must be finite here",

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import islice, product
+from itertools import islice, permutations, product
 from pathlib import Path
 from typing import Any
 
@@ -54,6 +54,9 @@ class Study:
         object.__setattr__(self, "grid", {key: _axis(key, self.grid[key]) for key in self.grid})
         if "seed" in self.grid:
             raise StudyError("grid: seed: the seeds of a study are said by `seeds`")
+        for within, whole in permutations(self.grid, 2):
+            if within.startswith(f"{whole}."):
+                raise StudyError(f"grid: {within}: {whole}, too, says what it is: leave one out")
         if self.radius is not None and any(key.split(".")[0] == "start" for key in self.grid):
             raise StudyError(
                 "grid: start: [start] gives every seed a start of its own: leave one out"
