@@ -8,6 +8,9 @@ from typing import Any
 import pytest
 
 import laglab
+from laglab.errors import NoRunError
+from laglab.results.columns import joined
+from laglab.results.shadows import shadow_pieces
 
 COMPARE = ("compare", "run", "--out", "both.png")
 FIGURE = ("figure", "run", "--out", "again.png")
@@ -137,3 +140,8 @@ def test_in_python_a_damaged_trace_is_an_error_of_ours(how: str, copied: Path) -
         _ = run.trace
     with pytest.raises(laglab.LaglabError, match=r"trace\.csv"):
         next(run.pieces())
+
+
+def test_a_table_that_is_not_there_is_named_once(tmp_path: Path) -> None:
+    with pytest.raises(NoRunError, match=r"none\.csv cannot be read: No such file or directory$"):
+        joined(shadow_pieces(tmp_path / "none.csv"))

@@ -140,7 +140,15 @@ def test_of_a_run_that_was_killed_the_log_is_named(run, tmp_path, refused):
     killed = shutil.copytree(run, tmp_path / "killed")
     (killed / "summary.json").unlink()
     line = refused("figure", killed, "--out", "x.png")
-    assert f"can be replayed: laglab replay {killed / 'robot.tlog'}" in line
+    said = f"can be replayed: laglab replay {killed / 'robot.tlog'} --estimator NAME"
+    assert said in line
+
+
+def test_a_page_of_a_run_that_was_killed_is_refused_before_it_is_replayed(run, tmp_path, refused):
+    killed, out = shutil.copytree(run, tmp_path / "killed"), tmp_path / "out"
+    (killed / "summary.json").unlink()
+    assert "was killed" in refused("replay", killed, "--estimator", "ekf", "--report", "--out", out)
+    assert not out.exists()
 
 
 @pytest.mark.slow

@@ -57,7 +57,9 @@ def csv_pieces(path: Path, names: Sequence[str], parsed: Callable[[Lines], T]) -
                 raise NoRunError(f"{path}: expected the columns {','.join(names)}")
             for piece in in_pieces(rows, len(names), AT_A_TIME):
                 yield parsed(piece)
-    except (OSError, ValueError, OverflowError, csv.Error) as error:
+    except OSError as error:
+        raise NoRunError(f"{path} cannot be read: {error.strerror}") from error
+    except (ValueError, OverflowError, csv.Error) as error:
         raise NoRunError(f"{path} cannot be read: {error}") from error
 
 

@@ -11,7 +11,7 @@ from laglab.extras import DRAWING, SEEING, require
 from laglab.results.figures import save
 from laglab.results.place import REPORT_FILE, replay_place
 from laglab.results.replaying import draw_replays, replayed_run, replays_table
-from laglab.results.run import Run, kept_scenario
+from laglab.results.run import Run, kept_scenario, open_run
 from laglab.results.shadows import collected, file_name, kept_rows, shadow_rows
 from laglab.scenario import load
 from laglab.scenario.tables.estimator import COMPARABLE
@@ -68,6 +68,8 @@ def replay(
         raise ScenarioError(f"{tlog}: no tick of a robot in it")
     trace_file = tlog.parent / TRACE_FILE
     trace = read_trace(trace_file) if trace_file.exists() else None
+    if report:
+        open_run(tlog.parent)  # before anything is computed
     asked = {name: shadow_rows(told, name, session) for name in estimators}
     directory = replay_place(out, tlog)
     replays = {
