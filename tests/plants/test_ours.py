@@ -56,6 +56,21 @@ def test_put_elsewhere_the_noise_is_another() -> None:
     assert before[3:6] != after[3:6]
 
 
+@pytest.mark.parametrize(
+    "key",
+    ["wheel_speed_max", "motor_time_constant", "wheel_radius_error", "track_error", "wheel_slip"],
+)
+def test_what_only_two_wheels_have_is_refused_of_others(key: str, fmus: Path) -> None:
+    load("lab", {f"plant.{key}": 0.1})
+    with pytest.raises(ScenarioError, match=f"{key}: only the robot of two wheels .* not car"):
+        load("lab-car", {f"plant.{key}": 0.1})
+    own = {"plant.fmu": str(fmus / "Barrow.fmu")}
+    names = {"plant.inputs": {"v": "twist[0]", "omega": "twist[1]"}}
+    names["plant.outputs"] = {"x": "pose[0]", "y": "pose[1]", "theta": "pose[2]"}
+    with pytest.raises(ScenarioError, match=f"{key}: .* not Barrow.fmu"):
+        load("lab", {**own, **names, f"plant.{key}": 0.1})
+
+
 def test_parameters_that_it_does_not_have_are_told() -> None:
     with pytest.raises(ScenarioError, match="parameters: robot has none that are set by name"):
         load("lab", {"plant.parameters.wheelbase": 1.0})

@@ -96,12 +96,14 @@ PLANT: Keys = {
     "track": POSITIVE,
     "wheel_noise_variance": NOT_NEGATIVE,
     "measurement_variance": st.tuples(POSITIVE, POSITIVE, POSITIVE).map(list),
+    "event": st.lists(st.fixed_dictionaries(PLANT_EVENT), max_size=2),
+}
+TWO_WHEELS: Keys = {
     "wheel_speed_max": NOT_NEGATIVE,
     "motor_time_constant": NOT_NEGATIVE,
     "wheel_radius_error": SHARE,
     "track_error": SHARE,
     "wheel_slip": st.floats(0, 1, exclude_max=True),
-    "event": st.lists(st.fixed_dictionaries(PLANT_EVENT), max_size=2),
 }
 BROUGHT: Keys = {
     "kind": st.sampled_from(["own:Robot", "installed"]),
@@ -110,7 +112,7 @@ BROUGHT: Keys = {
     ),
 }
 ANY_PLANT = (
-    table(PLANT)
+    table(PLANT | TWO_WHEELS)
     | st.fixed_dictionaries(FOREIGN, optional=OF_FOREIGN | PLANT)
     | st.fixed_dictionaries({"kind": BROUGHT.pop("kind")}, optional=BROUGHT | PLANT)
 )
@@ -193,7 +195,10 @@ def at(folder: Path, fields: dict[str, Any]) -> Scenario:
 def test_the_strategies_know_every_key() -> None:
     known = {
         *TOP,
-        *(f"plant.{key}" for key in (*PLANT, *FOREIGN, *OF_FOREIGN, "kind", "options")),
+        *(
+            f"plant.{key}"
+            for key in (*PLANT, *TWO_WHEELS, *FOREIGN, *OF_FOREIGN, "kind", "options")
+        ),
         *(f"plant.inputs.{key}" for key in INPUTS),
         *(f"plant.outputs.{key}" for key in OUTPUTS),
         *(f"plant.start.{key}" for key in START),

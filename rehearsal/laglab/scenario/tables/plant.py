@@ -26,6 +26,14 @@ SHIPPED = {
     "omni": "omnidirectional on three wheels, driven ahead and turned",
 }
 """The robots that come with the package, and what each is."""
+TWO_WHEELS = (
+    "wheel_speed_max",
+    "motor_time_constant",
+    "wheel_radius_error",
+    "track_error",
+    "wheel_slip",
+)
+"""Keys that only the paper's robot reads."""
 POSE_NAMES = ("x", "y", "theta")
 Name = Annotated[str, Field(strict=True, min_length=1)]
 """A variable's name in the FMU; an element of an array is `NAME[0]`."""
@@ -124,7 +132,8 @@ class PlantEvent(Table):
 
 
 class PlantTable(Table):
-    """The robot. Its errors, limits and lags are its own; the controller does not know of them."""
+    """The robot. Its errors, limits and lags are its own; the controller does not know of them, and
+    a robot that is not of kind `robot` has none of those here."""
 
     kind: Annotated[
         Name,
@@ -212,6 +221,9 @@ class PlantTable(Table):
                 raise ValueError(f"{name}: there is no fmu that it could be of")
         if self.parameters and not self.is_mapped:
             raise ValueError(f"parameters: {self.kind} has none that are set by name")
+        for name in TWO_WHEELS:
+            if getattr(self, name) and not (self.kind == "robot" and self.fmu is None):
+                raise ValueError(f"{name}: only the robot of two wheels has it, not {self.called}")
         if ours and self.options:
             raise ValueError("options: only a robot that somebody brings as a class has some")
         return self
