@@ -5,7 +5,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from laglab.scenario import shipped_names
+from laglab.scenario import load, shipped_names
 from laglab.scenario.overrides import Overrides
 from laglab.soak.turn import Blow, Signal, Strangers, Transport, Turn
 from laglab_control import ESTIMATORS
@@ -43,10 +43,11 @@ def draw(rng: np.random.Generator, number: int) -> Turn:
     transport: Transport = "serial" if _by_chance(rng, 0.4) else "udp"
     blow = _blow(rng) if _by_chance(rng, 0.5) else None
     strangers = _strangers(rng, transport, blow) if _by_chance(rng, 0.5) else ()
+    base = _one_of(rng, shipped_names())
     return Turn(
         number=number,
-        base=_one_of(rng, shipped_names()),
-        overrides={**_pace(rng), **_robot(rng), **_station(rng), **_link(rng)},
+        base=base,
+        overrides={**_pace(rng), **_robot(rng, base), **_station(rng), **_link(rng)},
         transport=transport,
         signed=_by_chance(rng, 0.5),
         blow=blow,
@@ -92,18 +93,19 @@ def _pace(rng: np.random.Generator) -> Overrides:
     return {"pace": "realtime", "speed": speed, "duration": duration}
 
 
-def _robot(rng: np.random.Generator) -> Overrides:
-    robot: Overrides = {
+def _robot(rng: np.random.Generator, base: str) -> Overrides:
+    robot: dict[str, object] = {
         "seed": int(rng.integers(2**31)),
         "noise": _by_chance(rng, 0.7),
         "start": [round(float(each), 3) for each in rng.uniform(-4, 4, 3)],
         "plant.fmi": _one_of(rng, (2, 3)),
         "plant.integration": _one_of(rng, ("euler", "exact")),
-        "plant.wheel_radius_error": round(float(rng.uniform(-0.1, 0.1)), 3),
     }
+    if load(base).plant.kind == "robot":  # others have no such wheels
+        robot["plant.wheel_radius_error"] = round(float(rng.uniform(-0.1, 0.1)), 3)
     if _by_chance(rng, 0.2):
         by = [round(float(each), 2) for each in rng.uniform(-0.5, 0.5, 3)]
-        return {**robot, "plant.event": [{"at": 1.0, "by": by}]}
+        robot["plant.event"] = [{"at": 1.0, "by": by}]
     return robot
 
 
