@@ -36,12 +36,24 @@ def test_how_large_and_how_fast_they_are():
 def test_between_the_rows_of_a_table_it_is_linear_and_outside_it_stands():
     path = Waypoints(
         np.array([1.0, 3.0, 4.0]),
-        np.array([[0, 0, 0, 0.5, 0.1], [2, 1, 4, 1.5, 0.3], [2, 2, 5, 1.0, 0.2]], dtype=float),
+        np.array([[0, 0, 0, 0.5, 0.1], [2, 1, 2, 1.5, 0.3], [2, 2, 3, 1.0, 0.2]], dtype=float),
     )
-    assert path.at(2.0) == (1.0, 0.5, 2.0, 1.0, pytest.approx(0.2))
-    assert path.at(4.0) == (2.0, 2.0, 5.0, 1.0, 0.2)
-    assert path.at(9.0) == (2.0, 2.0, 5.0, 0.0, 0.0)
+    assert path.at(2.0) == (1.0, 0.5, 1.0, 1.0, pytest.approx(0.2))
+    assert path.at(4.0) == (2.0, 2.0, 3.0, 1.0, 0.2)
+    assert path.at(9.0) == (2.0, 2.0, 3.0, 0.0, 0.0)
     assert path.at(0.0) == (0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def test_a_heading_that_jumps_by_a_turn_from_row_to_row_goes_the_short_way():
+    times = np.linspace(0.0, 30.0, 301)
+    rows = PATHS[0].sampled(times)
+    wrapped = rows.copy()
+    wrapped[:, 2] = np.angle(np.exp(1j * rows[:, 2]))
+    assert np.abs(np.diff(wrapped[:, 2])).max() > 6
+    between = times[:-1] + 0.05
+    headings = [Waypoints(times, each).sampled(between)[:, 2] for each in (rows, wrapped)]
+    turns = (headings[1] - headings[0]) / (2 * np.pi)
+    assert turns == pytest.approx(np.round(turns))
 
 
 @pytest.mark.parametrize(

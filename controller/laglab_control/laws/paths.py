@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -107,7 +108,8 @@ class Eight(Path):
 
 @dataclass(frozen=True, eq=False)
 class Waypoints(Path):
-    """Linear between rows x, y, theta, v, omega (n, 5) at growing `times` (n,) [s].
+    """Linear between rows x, y, theta, v, omega (n, 5) at growing `times` (n,) [s]; theta goes the
+    short way around, so that one that jumps by a turn is a path too.
 
     Before the first and after the last row the robot is to stand there. Raises ConfigError when
     rows and times do not fit, when one is not finite, or when the times do not grow.
@@ -125,9 +127,14 @@ class Waypoints(Path):
             last = self.times[int(np.argmin(np.diff(self.times) > 0)) + 1]
             raise ConfigError(f"the times of a path must grow: {last} is not after the one before")
 
+    @cached_property
+    def _columns(self) -> tuple[Vector, ...]:
+        x, y, theta, v, omega = self.rows.T
+        return x, y, np.unwrap(theta), v, omega
+
     def sampled(self, times: Vector) -> Matrix:
         """At `times` (n,)."""
-        columns = [np.interp(times, self.times, column) for column in self.rows.T]
+        columns = [np.interp(times, self.times, column) for column in self._columns]
         under_way = (times >= self.times[0]) & (times <= self.times[-1])
         return np.stack((*columns[:3], *(under_way * speed for speed in columns[3:])), axis=1)
 
