@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from scipy.stats import chi2
 
 from laglab_control import Measured
 from laglab_control.guard.evidence import windows
 
-from .guarding import P_0, U, driven, guarded, sampled
+from .guarding import MODEL, P_0, U, driven, guarded, sampled
 
 
 @pytest.mark.parametrize(
@@ -53,3 +54,11 @@ def test_a_wild_measurement_of_the_first_tick_is_not_used_either() -> None:
     state = guard.start(np.zeros(3), P_0)
     after = guard.correct(state, [Measured(0, np.array((5.0, 0.0, 0.0)))])
     assert (after.gated, after.x.tolist()) == (1, [0.0, 0.0, 0.0])
+
+
+@pytest.mark.parametrize(("beyond", "gated"), [(0.999, 0), (1.001, 1)])
+def test_wild_is_what_a_sound_filter_sees_once_in_a_million(beyond: float, gated: int) -> None:
+    guard = guarded()
+    nis = float(chi2.isf(1e-6, 3)) * beyond
+    z = np.linalg.cholesky(P_0 + MODEL.R) @ np.full(3, np.sqrt(nis / 3))
+    assert guard.correct(guard.start(np.zeros(3), P_0), [Measured(0, z)]).gated == gated

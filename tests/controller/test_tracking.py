@@ -38,6 +38,7 @@ def test_between_the_rows_of_a_table_it_is_linear_and_outside_it_stands():
         np.array([1.0, 3.0, 4.0]),
         np.array([[0, 0, 0, 0.5, 0.1], [2, 1, 2, 1.5, 0.3], [2, 2, 3, 1.0, 0.2]], dtype=float),
     )
+    assert path.at(1.0) == (0.0, 0.0, 0.0, 0.5, 0.1)
     assert path.at(2.0) == (1.0, 0.5, 1.0, 1.0, pytest.approx(0.2))
     assert path.at(4.0) == (2.0, 2.0, 3.0, 1.0, 0.2)
     assert path.at(9.0) == (2.0, 2.0, 3.0, 0.0, 0.0)

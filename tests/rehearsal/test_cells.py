@@ -92,6 +92,16 @@ def test_where_a_guard_acts_the_row_is_that_of_the_run_alone() -> None:
     assert row["final_rho"] == pytest.approx(run.summary.final.rho, abs=1e-9)
 
 
+def test_a_row_begins_with_what_was_varied_and_has_the_columns_that_others_read(
+    cells: list[Cell],
+) -> None:
+    assert computed([cells[0]])[0].column_names == [
+        "estimator.kind", "estimator.initial_covariance", "seed", "start_x", "start_y",
+        "start_theta", "converged", "settled_s", "rms_x", "rms_y", "rms_theta", "nees", "final_rho",
+        "final_theta_error", "max_v", "max_omega", "diverged_tick",
+    ]  # fmt: skip
+
+
 def test_every_seed_starts_somewhere_of_its_own_within_the_radius(cells: list[Cell]) -> None:
     u = np.random.default_rng((5, 3)).random(3)
     x, y, theta = cells[0].starts()[1]

@@ -33,6 +33,22 @@ def test_what_memory_keeps_is_what_the_files_hold(radio: laglab.Run) -> None:
             assert column.dtype.kind == filed[name].dtype.kind
 
 
+def test_the_tables_begin_with_the_columns_that_others_read(tmp_path: Path) -> None:
+    laglab.run("lab-radio", TWO_SECONDS | {"estimator.compare": ["ekf"]}, out=tmp_path / "run")
+    laglab.run("fig6", {"duration": 0.1, "pace": "realtime"}, out=tmp_path / "clock")
+    heads = {each.name: each.read_text().split("\n")[0] for each in tmp_path.glob("*/*.csv")}
+    claimed = "p_xx,p_xy,p_xt,p_yy,p_yt,p_tt"
+    assert heads == {
+        "trace.csv": "tick,time,x,y,theta,x_meas,y_meas,theta_meas,x_est,y_est,theta_est,"
+        "v_sent,omega_sent,v,omega",
+        "arrivals.csv": "direction,tick,arrived,time,refused",
+        "claims.csv": f"tick,time,{claimed}",
+        "link.csv": "direction,tick,frame,copy,size,fate,extra",
+        "timing.csv": "tick,lateness,answer",
+        "shadow-ekf.csv": f"tick,x,y,theta,{claimed}",
+    }
+
+
 def test_over_udp_the_same_files_byte_for_byte(radio: laglab.Run, tmp_path: Path) -> None:
     laglab.run("lab-radio", TWO_SECONDS, "udp", tmp_path / "udp")
     assert radio.directory is not None
