@@ -36,25 +36,31 @@ def test_how_large_and_how_fast_they_are():
 def test_between_the_rows_of_a_table_it_is_linear_and_outside_it_stands():
     path = Waypoints(
         np.array([1.0, 3.0, 4.0]),
-        np.array([[0, 0, 0, 0.5, 0.1], [2, 1, 2, 1.5, 0.3], [2, 2, 3, 1.0, 0.2]], dtype=float),
+        np.array([[0, 0, 0, 0.5, 0.1], [2, 1, 4, 1.5, 0.3], [2, 2, 5, 1.0, 0.2]], dtype=float),
     )
-    assert path.at(1.0) == (0.0, 0.0, 0.0, 0.5, 0.1)
-    assert path.at(2.0) == (1.0, 0.5, 1.0, 1.0, pytest.approx(0.2))
-    assert path.at(4.0) == (2.0, 2.0, 3.0, 1.0, 0.2)
-    assert path.at(9.0) == (2.0, 2.0, 3.0, 0.0, 0.0)
+    assert path.at(2.0) == (1.0, 0.5, 2.0, 1.0, pytest.approx(0.2))
+    assert path.at(4.0) == (2.0, 2.0, 5.0, 1.0, 0.2)
+    assert path.at(9.0) == (2.0, 2.0, 5.0, 0.0, 0.0)
     assert path.at(0.0) == (0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-def test_a_heading_that_jumps_by_a_turn_from_row_to_row_goes_the_short_way():
+@pytest.mark.parametrize("least", [-math.pi, 0.0])
+@pytest.mark.parametrize("turning", [1.0, 0.0])
+def test_a_heading_that_jumps_by_a_turn_goes_on_without(least, turning):
     times = np.linspace(0.0, 30.0, 301)
-    rows = PATHS[0].sampled(times)
-    wrapped = rows.copy()
-    wrapped[:, 2] = np.angle(np.exp(1j * rows[:, 2]))
-    assert np.abs(np.diff(wrapped[:, 2])).max() > 6
+    rows = PATHS[0].sampled(times) * [1, 1, 1, 1, turning]
+    jumps = rows.copy()
+    jumps[:, 2] = least + (rows[:, 2] - least) % (2 * np.pi)
+    assert np.abs(np.diff(jumps[:, 2])).max() > 6
     between = times[:-1] + 0.05
-    headings = [Waypoints(times, each).sampled(between)[:, 2] for each in (rows, wrapped)]
+    headings = [Waypoints(times, each).sampled(between)[:, 2] for each in (rows, jumps)]
     turns = (headings[1] - headings[0]) / (2 * np.pi)
-    assert turns == pytest.approx(np.round(turns))
+    assert turns == pytest.approx(np.full(300, np.round(turns[0])), abs=1e-12)
+
+
+def test_a_robot_may_turn_around_from_row_to_row():
+    rows = np.array([[0, 0, 0, 0, 0.7], [0, 0, 7, 0, 0.7]], dtype=float)
+    assert Waypoints(np.array([0.0, 10.0]), rows).at(5.0).theta == 3.5
 
 
 @pytest.mark.parametrize(

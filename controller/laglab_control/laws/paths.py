@@ -106,10 +106,21 @@ class Eight(Path):
         return self.sampled(np.linspace(0, math.tau / self._rate, OUTLINE))[:, :2]
 
 
+def unwound(times: Vector, theta: Vector, omega: Vector) -> Vector:
+    """Headings (n,) [rad] at `times` (n,) [s] without the turns by which they jump from row to row.
+
+    A jump is one if less those turns it is where omega (n,) [rad/s] leads, to a quarter of a turn.
+    """
+    beyond = np.diff(theta) - np.diff(times) * (omega[1:] + omega[:-1]) / 2
+    turns = 2 * np.pi * np.round(beyond / (2 * np.pi))
+    jumps = np.where(np.abs(beyond - turns) < np.pi / 2, turns, 0.0)
+    return theta - np.concatenate(([0.0], np.cumsum(jumps)))
+
+
 @dataclass(frozen=True, eq=False)
 class Waypoints(Path):
-    """Linear between rows x, y, theta, v, omega (n, 5) at growing `times` (n,) [s]; theta goes the
-    short way around, so that one that jumps by a turn is a path too.
+    """Linear between rows x, y, theta, v, omega (n, 5) at growing `times` (n,) [s]; where theta
+    jumps by a turn, as a recorded one does, it goes on without (`unwound`).
 
     Before the first and after the last row the robot is to stand there. Raises ConfigError when
     rows and times do not fit, when one is not finite, or when the times do not grow.
@@ -130,7 +141,7 @@ class Waypoints(Path):
     @cached_property
     def _columns(self) -> tuple[Vector, ...]:
         x, y, theta, v, omega = self.rows.T
-        return x, y, np.unwrap(theta), v, omega
+        return x, y, unwound(self.times, theta, omega), v, omega
 
     def sampled(self, times: Vector) -> Matrix:
         """At `times` (n,)."""
