@@ -46,7 +46,7 @@ do; a traceback is a bug of ours.
 | 3 | the estimate diverged, and the robot was stopped |
 | 4 | a side, the link or the disk failed, or another station took over |
 | 5 | an emergency stop |
-| 130 | interrupted: Ctrl-C, SIGTERM, or the terminal closed |
+| 130 | interrupted, here or on the other side: Ctrl-C, SIGTERM, or the terminal closed |
 | 141 | whoever read the output went away |
 
 From Python these are exceptions, one tree in each package. Those of `laglab` carry the exit code
