@@ -114,8 +114,8 @@ def read_summary(directory: Path) -> Summary:
         log = directory / TLOG_FILE
         if isinstance(error, FileNotFoundError) and log.exists():
             raise NoRunError(
-                f"{directory} has no {SUMMARY_FILE}: that run was killed, had no tick, no room for it, or "
-                f"is not over; its log can be replayed: laglab replay {log} --estimator NAME"
+                f"{directory} has no {SUMMARY_FILE}: that run was killed, had no tick, no room for "
+                f"it, or is not over; its log can be replayed: laglab replay {log} --estimator NAME"
             ) from error
         raise NoRunError(_why_not(directory, error)) from error
     except (msgspec.DecodeError, RecursionError) as error:

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import islice, permutations, product
+from itertools import combinations, islice, product
 from pathlib import Path
 from typing import Any
 
@@ -54,9 +54,7 @@ class Study:
         object.__setattr__(self, "grid", {key: _axis(key, self.grid[key]) for key in self.grid})
         if "seed" in self.grid:
             raise StudyError("grid: seed: the seeds of a study are said by `seeds`")
-        for within, whole in permutations(self.grid, 2):
-            if within.startswith(f"{whole}."):
-                raise StudyError(f"grid: {within}: {whole}, too, says what it is: leave one out")
+        _refuse_said_twice(self.grid)
         if self.radius is not None and any(key.split(".")[0] == "start" for key in self.grid):
             raise StudyError(
                 "grid: start: [start] gives every seed a start of its own: leave one out"
@@ -169,6 +167,27 @@ def _axis(key: str, values: Sequence[object]) -> tuple[object, ...]:
     if twice := next((text for text in times if times[text] > 1), None):
         raise StudyError(f"grid: {key}: must have each value once, not {twice} again")
     return tuple(values)
+
+
+def _refuse_said_twice(grid: Mapping[str, Sequence[object]]) -> None:
+    """Raises StudyError: of what two keys say the later holds, and rows would tell of both."""
+    for earlier, later in combinations(grid, 2):
+        within, whole = sorted((earlier, later), key=len, reverse=True)
+        if not within.startswith(f"{whole}."):
+            continue
+        way = within.removeprefix(f"{whole}.").split(".")
+        if later == whole or any(_says(value, way) for value in grid[whole]):
+            raise StudyError(f"grid: {within}: {whole}, too, says what it is: leave one out")
+
+
+def _says(value: object, way: Sequence[str]) -> bool:
+    for part in way:
+        if isinstance(value, list):
+            return True  # keys count its elements
+        if not (isinstance(value, Mapping) and part in value):
+            return False
+        value = value[part]
+    return True
 
 
 def _listed(key: str, values: object) -> list[Any]:
