@@ -201,12 +201,12 @@ def test_a_dead_station_lets_the_robot_stop_by_its_own_failsafe(
     assert_robot_let_go(robot)
     trace = read_trace(tmp_path / "run" / "trace.csv")
     last_sent = int(trace["tick"][np.isfinite(trace["v_sent"])][-1])
-    v = trace["v"][last_sent + N : last_sent + N + 150]
-    assert v[0] > 0.5
-    assert (v[:40] == v[0]).all()
-    assert (np.diff(v[55:95]) < 0).all(), "a ramp, not a jump"
-    assert (v[105:] == 0).all()
-    assert np.ptp(trace["x_meas"][last_sent + N + 110 :]) < 0.1, "it stands"
+    v = trace["v"][last_sent + N :]
+    ramp = np.flatnonzero(np.diff(v) < 0)
+    assert v[0] > 0.5 > v[-1] == 0
+    assert 40 <= ramp[0] <= 100, "after its time-out, and a last command may be late"
+    assert list(ramp) == list(range(ramp[0], ramp[0] + 50)), "a ramp, not a jump"
+    assert np.ptp(trace["x_meas"][last_sent + N + ramp[-1] + 10 :]) < 0.1, "it stands"
 
 
 @pytest.fixture
