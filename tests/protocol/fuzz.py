@@ -111,7 +111,7 @@ def services(data: bytes) -> None:
     assert under_test.parameters["DELAY_N"] == 10
 
 
-OURS = [LAYOUT_OF_ID[number] for number in range(52100, 52105)]
+OURS = [layout for number, layout in LAYOUT_OF_ID.items() if number >= 52100]
 
 
 def said(data: bytes) -> Iterator[Message]:

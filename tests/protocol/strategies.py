@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from laglab_protocol import Message, message_type
 from laglab_protocol.dialect.generated import laglab as dialect
+from laglab_protocol.messages.names import WRITTEN_OUT
 
 FLOATS = {
     "f": st.floats(width=32, allow_nan=False),
@@ -39,13 +40,7 @@ def messages_named(name: str) -> st.SearchStrategy[Message]:
     return st.tuples(*fields).map(lambda values: kind(*values))
 
 
-OURS = [
-    "LAGLAB_TICK",
-    "LAGLAB_MEASUREMENT",
-    "LAGLAB_COMMAND",
-    "LAGLAB_ESTIMATE",
-    "LAGLAB_END",
-]
+OURS = [name for name in WRITTEN_OUT if name.startswith("LAGLAB_")]
 STANDARD = ["HEARTBEAT", "PARAM_VALUE", "STATUSTEXT", "ODOMETRY", "COMMAND_ACK", "BATTERY_STATUS"]
 
 
