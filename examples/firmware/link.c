@@ -6,7 +6,7 @@
 
 #include <laglab/mavlink.h>
 
-enum { ROBOT_SYSTEM = 1, STATION_SYSTEM = 200, DIALECT_VERSION = 3, MINUTE = 6000000 };
+enum { ROBOT_SYSTEM = 1, STATION_SYSTEM = 200, MINUTE = 6000000 };
 #define ROBOT_COMPONENT MAV_COMP_ID_AUTOPILOT1
 #define STATION_COMPONENT MAV_COMP_ID_MISSIONPLANNER
 
@@ -221,7 +221,7 @@ size_t link_write_refusal(uint8_t *buffer, uint16_t request) {
 size_t link_write_settings(uint8_t *buffer, uint16_t playout) {
     mavlink_message_t message;
     mavlink_msg_laglab_settings_pack(ROBOT_SYSTEM, ROBOT_COMPONENT, &message, SAMPLE_TIME, NAN, NAN, INFINITY, INFINITY,
-                                     UINT16_MAX, UINT16_MAX, DIALECT_VERSION, playout, UINT16_MAX, UINT16_MAX);
+                                     UINT16_MAX, UINT16_MAX, MAVLINK_VERSION, playout, UINT16_MAX, UINT16_MAX);
     return mavlink_msg_to_send_buffer(buffer, &message);
 }
 

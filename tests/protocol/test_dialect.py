@@ -3,10 +3,11 @@
 import tomllib
 from enum import IntEnum
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
-from laglab_protocol import DialectError, EndReason, message_type
+from laglab_protocol import DIALECT_VERSION, DialectError, EndReason, message_type
 from laglab_protocol.dialect.generated import laglab as dialect
 from laglab_protocol.dialect.mavgen import (
     GENERATED,
@@ -44,6 +45,10 @@ def test_our_messages_declare_their_fields_in_wire_order() -> None:
 
     assert [each.msgname for each in ours] == [name for name in WRITTEN_OUT if "LAGLAB" in name]
     assert all(each.fieldnames == each.ordered_fieldnames for each in ours)
+
+
+def test_the_version_is_the_xml_s() -> None:
+    assert ElementTree.parse(dialect_path()).findtext("version") == str(DIALECT_VERSION)
 
 
 @pytest.mark.parametrize(("ours", "name"), [(EndReason, "LAGLAB_END_REASON")])
