@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from laglab_control import Controller, Echo, Measured, RobotModel, StationConfig
-from laglab_control.batch import BatchController, Pose
+from laglab_control.batch import BATCHED, BatchController, Pose
 from laglab_control.batch.impaired.guard import _length
 from laglab_control.flight import sent_for
 from laglab_control.guard.evidence import no_evidence, weighed
@@ -14,7 +14,7 @@ STARTS = np.array(((-3.0, -2.0), (-3.0, 1.0), (0.0, 1.5)))
 
 
 @pytest.mark.parametrize("exact", [True, False])
-@pytest.mark.parametrize("estimator", ["ekf", "popf", "delayed-ekf"])
+@pytest.mark.parametrize("estimator", [name for name in BATCHED if name != "raw"])
 @pytest.mark.parametrize("wheels", [(0.01, 0.01), (0.01, 0.03)])
 def test_the_batch_says_what_each_controller_says(estimator, wheels, exact):
     model = RobotModel(Q=np.diag(wheels))

@@ -11,6 +11,7 @@ from laglab.results.numbers import has_converged
 from laglab.runs.inline import InlineLink
 from laglab.scenario import both_ways, load
 from laglab.studies.many import run_many, schedule_of, why_one_by_one
+from laglab_control.batch.impaired import IMPAIRED
 
 from .many_kept import furthest, kept
 
@@ -60,6 +61,17 @@ def test_with_noise_over_the_first_seconds(link, kind):
     scenarios = [station(kind, link, seed=seed, duration=3.0) for seed in (1, 2)]
     many = kept(scenarios)
     assert furthest(many, 1, laglab.run(scenarios[1])) < SHARP
+
+
+def test_each_filter_that_there_is_is_tried():
+    assert {kind for _, kind in NOISY} == set(IMPAIRED)
+
+
+def test_one_that_there_is_for_ideal_links_alone_runs_one_by_one_over_others(monkeypatch):
+    monkeypatch.delitem(IMPAIRED, "ekf")
+    over_both = [{}, LINKS["bursts"]]
+    whys = [why_one_by_one(load("lab", {"estimator.kind": "ekf", **link})) for link in over_both]
+    assert whys == [None, "there is no ekf for many robots on such a link"]
 
 
 def test_other_robots_are_no_exception():

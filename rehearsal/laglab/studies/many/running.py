@@ -18,7 +18,7 @@ from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario
 from laglab.studies.many.schedule import schedule_of
 from laglab_control.batch import BATCHED, BatchController, Pose, Speeds, Symmetric
-from laglab_control.batch.impaired import ImpairedController, Timetable
+from laglab_control.batch.impaired import IMPAIRED, ImpairedController, Timetable
 from laglab_fmu import CallError, OtherParameters
 from laglab_gateway import Safety
 from laglab_gateway.drive import FASTEST
@@ -70,10 +70,11 @@ def run_many(scenarios: Sequence[Scenario], told: OnTicks) -> Ends:
 
 def why_one_by_one(scenario: Scenario) -> str | None:
     """Why a run of that scenario cannot be one of many; None when it can."""
-    link = scenario.link
+    link, kind = scenario.link, scenario.estimator.kind
     reasons = {
-        f"there is no {scenario.estimator.kind} for many robots": (
-            scenario.estimator.kind not in BATCHED
+        f"there is no {kind} for many robots": kind not in BATCHED,
+        f"there is no {kind} for many robots on such a link": (
+            kind not in IMPAIRED and not is_ideal(scenario)
         ),
         f"there is no law {scenario.law.kind} for many robots": scenario.law.kind != "polar",
         f"of {scenario.plant.called} there is one a run, and no fleet (plant)": (
