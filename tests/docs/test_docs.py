@@ -8,17 +8,20 @@ import shlex
 import tokenize
 from collections.abc import Iterator
 from pathlib import Path
+from typing import get_args
 
 import pytest
 import typer
 
 import laglab
 from laglab.command import app_of
+from laglab.export.formats import FORMATS, FormatName
 from laglab.live import spelled_out
+from laglab.results.meaning import LINK
 from laglab.results.shadows import COLUMNS
-from laglab_control import Erratum, PolarLaw, delay_margin
+from laglab_control import ESTIMATORS, Erratum, PolarLaw, delay_margin
 from laglab_control.estimators.paper.popf import delay_limit
-from laglab_gateway import ROWS, TraceRow
+from laglab_gateway import ROWS, FateKind, TraceRow
 from laglab_gateway.drive import Rejection
 
 ROOT = Path(__file__).parents[2]
@@ -95,9 +98,21 @@ def test_pages_that_the_code_cites_are_there() -> None:
     assert not {(path, page) for path, page in cited if not (ROOT / page).exists()}
 
 
-def test_every_reason_for_not_following_a_command_is_told() -> None:
-    told = (ROOT / "docs" / "reference" / "files.md").read_text(encoding="utf-8")
-    assert not [each for each in Rejection if f"`{each.value}`" not in told]
+def test_every_fate_and_every_reason_for_not_following_a_command_is_told() -> None:
+    ways = [each.value for each in (*FateKind, *Rejection)]
+    page = (ROOT / "docs" / "reference" / "files.md").read_text(encoding="utf-8")
+    assert not [each for each in ways if f"`{each}`" not in page]
+    (fate,) = [column.sentence for column in LINK if column.name == "fate"]
+    assert re.findall("`(.*?)`", fate) == list(FateKind)
+
+
+def test_every_estimator_has_a_row_on_its_page_and_every_format_one_on_its() -> None:
+    of_the_station = (ROOT / "controller" / "README.md").read_text(encoding="utf-8")
+    first = of_the_station.split("\n## ")[0]
+    assert re.findall(r"^\| `(.*?)` \|", first, flags=re.M) == list(ESTIMATORS)
+    of_exports = (ROOT / "docs" / "export.md").read_text(encoding="utf-8").split("\n## ")[0]
+    assert re.findall(r"^\| `(.*?)` \|", of_exports, flags=re.M) == list(FORMATS)
+    assert get_args(FormatName) == tuple(FORMATS)
 
 
 def test_the_arguments_of_a_run_are_those_of_the_code() -> None:

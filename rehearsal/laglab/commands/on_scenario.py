@@ -9,6 +9,7 @@ import typer
 from laglab.errors import ScenarioError
 from laglab.scenario import Overrides, Scenario, assignment, load, read_timeline, shipped_names
 from laglab.scenario.keys import NO_UNIT, rows
+from laglab.scenario.tables.plant import TWO_WHEELS
 from laglab.tables import say
 from laglab_control import ESTIMATORS
 
@@ -75,11 +76,7 @@ OF_A_SIMULATED_ROBOT = (
     "plant.inputs",
     "plant.outputs",
     "plant.start",
-    "plant.wheel_speed_max",
-    "plant.motor_time_constant",
-    "plant.wheel_radius_error",
-    "plant.track_error",
-    "plant.wheel_slip",
+    *(f"plant.{key}" for key in TWO_WHEELS),
 )
 """Keys, and tables, that nobody reads in front of a real one."""
 OF_THE_POLAR_LAW = ("law.gamma", "law.lambda", "law.h", "law.goal_tolerance")

@@ -2,6 +2,8 @@
 
 import re
 
+from laglab_gateway import FateKind
+
 DEFINITIONS = {
     "builtin_interfaces/Time": "int32 sec\nuint32 nanosec",
     "std_msgs/Header": "builtin_interfaces/Time stamp\nstring frame_id",
@@ -34,7 +36,7 @@ DEFINITIONS = {
         "uint32 frame            # its number in that tick\n"
         "uint32 copy             # which copy of it\n"
         "uint32 size             # bytes\n"
-        "string fate             # delivered, lost, burst, outage, queue-full, corrupted, late\n"
+        f"string fate             # {', '.join(FateKind)}\n"
         "float64 extra           # how much later than the fixed delay, s"
     ),
     "laglab_msgs/Arrival": (
