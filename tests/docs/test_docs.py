@@ -19,6 +19,7 @@ from laglab.export.formats import FORMATS, FormatName
 from laglab.live import spelled_out
 from laglab.results.meaning import LINK
 from laglab.results.shadows import COLUMNS
+from laglab.studies.judged import Judgements
 from laglab_control import ESTIMATORS, Erratum, PolarLaw, delay_margin
 from laglab_control.estimators.paper.popf import delay_limit
 from laglab_gateway import ROWS, FateKind, TraceRow
@@ -222,3 +223,11 @@ def test_every_column_of_a_run_s_files_is_documented() -> None:
     assert described.pop("trace.csv") == set(TraceRow._fields)
     assert described.pop("shadow-NAME.csv") == set(COLUMNS)
     assert described == {name: set(kind._fields) for name, kind in ROWS.items()}
+
+
+def test_every_column_of_a_study_is_documented() -> None:
+    page = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
+    _, *rows = table(page, "What it leaves")  # the grid's keys come first
+    columns = [name for cells in rows for name in re.findall("`(.*?)`", cells[0])]
+    start = ["seed", "start_x", "start_y", "start_theta"]
+    assert sorted(columns) == sorted([*start, *Judgements._fields])
