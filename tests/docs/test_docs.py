@@ -26,7 +26,7 @@ from laglab_gateway import ROWS, FateKind, TraceRow
 from laglab_gateway.drive import Rejection
 
 ROOT = Path(__file__).parents[2]
-COMPONENTS = ("fmu", "protocol", "gateway", "controller", "rehearsal", "examples", "tests")
+COMPONENTS = ("fmu", "protocol", "gateway", "controller", "rehearsal", "examples", "tests", "docs")
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("[a-z]*/**/*.md")])
 THEORY = (ROOT / "docs" / "theory.md").read_text(encoding="utf-8")
 GLOSSARY = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")
@@ -83,20 +83,28 @@ def test_links_lead_somewhere(page: Path) -> None:
         assert not anchor or anchor in anchors(target), link
 
 
+def sources(*patterns: str) -> list[Path]:
+    folders = (ROOT / component for component in COMPONENTS)
+    return [path for each in folders for pattern in patterns for path in each.rglob(pattern)]
+
+
 def test_pages_that_the_code_cites_are_there() -> None:
-    sources = [
-        path
-        for component in COMPONENTS
-        for pattern in ("*.py", "*.c", "*.h", "*.toml")
-        for path in (ROOT / component).rglob(pattern)
-    ]
     cited = {
         (named(path), page)
-        for path in sources
+        for path in sources("*.py", "*.c", "*.h", "*.toml")
         for page in CITED_PAGE.findall(path.read_text(encoding="utf-8"))
     }
     assert len(cited) > 20
     assert not {(path, page) for path, page in cited if not (ROOT / page).exists()}
+
+
+@pytest.mark.parametrize("page", ["CONTRIBUTING.md", "docs/architecture.md", "docs/releasing.md"])
+def test_sources_that_a_page_for_maintainers_names_are_there(page: str) -> None:
+    said = re.findall(r"`([\w/]+(?:\.(?:py|xml)|/))`", prose(ROOT / page))
+    there = [f"/{named(each)}" for each in [*ROOT.glob("*/"), *sources("*.py", "*.xml", "*/")]]
+    ends = tuple(f"/{each.rstrip('/')}" for each in said)
+    assert not [end for end in ends if not any(each.endswith(end) for each in there)]
+    assert ends
 
 
 def test_every_fate_and_every_reason_for_not_following_a_command_is_told() -> None:

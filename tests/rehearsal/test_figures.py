@@ -15,6 +15,7 @@ from laglab.results.columns import joined
 from laglab.results.figures import INCHES, Width, draw_runs
 from laglab.results.figures.strip import CAUSES
 from laglab.results.link_view import link_view
+from laglab.results.report import plots
 from laglab.results.run import Kept
 from laglab.scenario import load
 from laglab.scenario.differences import differing
@@ -265,3 +266,5 @@ def test_every_way_to_be_lost_has_a_mark_of_its_own() -> None:
     ways = {each.value for each in (*FateKind, *Rejection)} - {FateKind.DELIVERED}
     assert set(CAUSES) == ways
     assert len(set(CAUSES.values())) == len(ways)
+    assert set(plots.CAUSES) == set(FateKind) - {FateKind.DELIVERED}
+    assert len(set(plots.CAUSES.values())) == len(plots.CAUSES)
