@@ -35,9 +35,10 @@ class Part(NamedTuple):
 
 PARTS = {
     "estimators": Part(
-        "controller/laglab_control/estimators/*.py",
+        "controller/laglab_control/estimators/**/*.py",
         tuple(f"tests/controller/test_{name}.py" for name in (
             "estimators", "linear", "exact", "known_facts", "sliding", "rewinding", "calibrating",
+            "tue_predictor",
         )),
     ),
     "queues": Part(

@@ -4,13 +4,23 @@ import ast
 import runpy
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[2]
+MUTATE = runpy.run_path(str(ROOT / "tests" / "mutate.py"))
+
+
+@pytest.mark.parametrize("part", MUTATE["PARTS"])
+def test_a_part_is_all_of_its_folder_and_its_tests_are_there(part: str) -> None:
+    files, tests = MUTATE["chosen"](part)
+    folder = ROOT / MUTATE["PARTS"][part].files.split("*")[0]
+    assert files == sorted(folder.rglob("*.py"))
+    assert all((ROOT / test).exists() for test in tests)
 
 
 def test_each_mutant_is_another_program() -> None:
-    mutants = runpy.run_path(str(ROOT / "tests" / "mutate.py"))["mutants"]
     file = ROOT / "gateway" / "laglab_gateway" / "link" / "fates.py"
-    made = list(mutants(file))
+    made = list(MUTATE["mutants"](file))
     original = ast.unparse(ast.parse(file.read_text(encoding="utf-8")))
     assert len(made) > 10
     for mutant in made:
