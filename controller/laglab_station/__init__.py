@@ -1,6 +1,7 @@
 """The remote station: messages in, messages out, and its loop."""
 
 from laglab_control import StationConfig
+from laglab_station.alarms import ESTIMATE_IS_WRONG
 from laglab_station.driver import MakeController
 from laglab_station.errors import RobotSilentError, StationError
 from laglab_station.hearing import echoes, recalled
@@ -12,6 +13,7 @@ from laglab_station.shadow import ShadowRow, shadow
 from laglab_station.station import Station
 
 __all__ = [
+    "ESTIMATE_IS_WRONG",
     "MakeController",
     "Onlooker",
     "Questions",

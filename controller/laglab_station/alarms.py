@@ -4,6 +4,8 @@ from laglab_control import Control, Controller
 from laglab_protocol import MAV_SEVERITY_WARNING, Message, Statustext
 from laglab_station.report import Alarm
 
+ESTIMATE_IS_WRONG = "estimate is wrong"
+"""How what is said of an alarm begins."""
 TOLD = 100
 """The report tells of so many; the rest are only counted."""
 
@@ -25,7 +27,7 @@ class Alarms:
         self.raised += 1
         if len(self.told) < TOLD:
             self.told.append(Alarm(tick, alarm.cause))
-        text = f"estimate is wrong at tick {tick}: locating"
+        text = f"{ESTIMATE_IS_WRONG} at tick {tick}: locating"
         return [Statustext(MAV_SEVERITY_WARNING, text.encode())]
 
     def gated(self, controller: Controller, control: Control) -> int:

@@ -11,8 +11,12 @@ from laglab.live.feed import Controls, Feed
 from laglab.live.messages import Given, Line, LiveOrder, Rows, packed, unpacked
 from laglab.live.page import FOR_EVER, announced, page_html
 from laglab.live.server import _unless_crowded
+from laglab.live.stream import Known
+from laglab.results.report.tables import ALARM, STOPPED
 from laglab.scenario import load
 from laglab_gateway import FOLLOWED, ArrivalRow, TraceRow
+from laglab_gateway.side import EMERGENCY_STOP
+from laglab_station import ESTIMATE_IS_WRONG
 
 
 def test_a_fast_station_s_frames_all_have_room() -> None:
@@ -119,3 +123,10 @@ def test_outages_that_are_announced_are_hatched_as_in_the_report() -> None:
     )
     assert announced(endless) == [(2.0, FOR_EVER)]
     assert announced(load("lab-radio", {"duration": 2.0})) == [], "the run is over by then"
+
+
+def test_of_what_the_sides_say_stops_and_alarms_are_marked() -> None:
+    said = [EMERGENCY_STOP, f"{ESTIMATE_IS_WRONG} at tick 3: locating", "lost the watcher at a:1"]
+    piece = Known().learn(Rows(), said, load("lab"))
+    assert piece.tables["marks"]["lane"] == [STOPPED, ALARM]
+    assert [text.split(": ", 1)[1] for text in piece.texts] == said

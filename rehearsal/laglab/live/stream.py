@@ -23,12 +23,13 @@ from laglab.results.report.tables import (
 )
 from laglab.scenario import Scenario
 from laglab_gateway import ArrivalRow, ClaimRow, LinkRow, TimingRow, trace_of
+from laglab_station import ESTIMATE_IS_WRONG
 
 MOST_ROWS = 3_000
 """Rows of each table; when there are more, every other one goes."""
 MOST_TEXTS = 200
 DIGITS = 6
-LANE_OF = {"stop": STOPPED, "estimate is wrong": ALARM}
+LANE_OF = {"stop": STOPPED, ESTIMATE_IS_WRONG: ALARM}
 """The lane that is marked when one of the sides says these words."""
 
 Cells: TypeAlias = dict[str, list[float | str]]
