@@ -1,6 +1,7 @@
 """Runs that follow a path: what is said and drawn of them, and what a path may be."""
 
 import csv
+import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -125,6 +126,20 @@ def test_columns_may_stand_in_any_order_and_others_beside_them(tmp_path: Path) -
     assert path.at(0.0) == (1, 2, 3, 5, 6)
 
 
+def test_a_long_path_is_not_copied_at_every_tick(tmp_path: Path) -> None:
+    rows = "".join(f"{row},{row / 1000},0,0,0.1,0\n" for row in range(20_000))
+    (tmp_path / "way.csv").write_text(HEAD + rows)
+    told = {"law.kind": "tracking", "law.path": str(tmp_path / "way.csv"), "goal": [10.0, 0.0, 0.0]}
+    path = load("lab", told).path
+    assert path is not None
+    assert path.at(5.5).x == pytest.approx(0.0055)
+    tracemalloc.start()
+    path.at(6.5)
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 20_000
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -156,6 +171,8 @@ def test_what_is_no_path_is_said_in_a_line(tmp_path: Path, text: str, said: str)
         ({"law.kind": "spiral"}, "law.kind: must be one of polar, tracking, or module:Class"),
         ({"law.kind": "tracking", "law.path": "circle(1)"}, "radius, speed must be numbers"),
         ({"law.kind": "tracking", "law.path": "eight(-1, 1)"}, "width must be a finite number"),
+        ({"law.kind": "tracking", "law.path": "eight(1e-200, 1)"}, "from 1e-09 to 1e+09"),
+        ({"law.kind": "tracking", "law.path": "circle(1e-300, 1e300)"}, "from 1e-09 to 1e+09"),
         ({"law.kind": "tracking", "law.path": "oval(1, 1)"}, "must be circle(radius, speed)"),
         ({"law.kind": "tracking", "law.path": "no.csv"}, "No such file or directory"),
     ],

@@ -13,6 +13,8 @@ from laglab_control.model import Matrix, Vector
 
 OUTLINE = 400
 """Points by which a closed path is drawn."""
+LEAST, MOST = 1e-9, 1e9
+"""Of a shape's measures [m, m/s]: with those beyond, what follows from them is no number."""
 
 
 class Reference(NamedTuple):
@@ -41,6 +43,12 @@ class Path(Protocol):
         return Reference(*self.sampled(np.array([time]))[0].tolist())
 
 
+def _check_shape(shape: "Circle | Eight", *measures: float) -> None:
+    check(shape)
+    if not all(LEAST <= measure <= MOST for measure in measures):
+        raise ConfigError(f"its measures must be from {LEAST:g} to {MOST:g}")
+
+
 @dataclass(frozen=True)
 class Circle(Path):
     """Counter-clockwise at constant `speed` [m/s], from the point on the right of the centre.
@@ -53,7 +61,7 @@ class Circle(Path):
     speed: Positive
 
     def __post_init__(self) -> None:
-        check(self)
+        _check_shape(self, self.radius, self.speed)
 
     def sampled(self, times: Vector) -> Matrix:
         """At `times` (n,)."""
@@ -82,7 +90,7 @@ class Eight(Path):
     speed: Positive
 
     def __post_init__(self) -> None:
-        check(self)
+        _check_shape(self, self.width, self.speed)
 
     @property
     def _rate(self) -> float:
@@ -139,13 +147,15 @@ class Waypoints(Path):
             raise ConfigError(f"the times of a path must grow: {last} is not after the one before")
 
     @cached_property
-    def _columns(self) -> tuple[Vector, ...]:
+    def _columns(self) -> Matrix:
+        """(6, n), the times first: each in one piece, or it would be copied at every tick."""
         x, y, theta, v, omega = self.rows.T
-        return x, y, unwound(self.times, theta, omega), v, omega
+        return np.vstack((self.times, x, y, unwound(self.times, theta, omega), v, omega))
 
     def sampled(self, times: Vector) -> Matrix:
         """At `times` (n,)."""
-        columns = [np.interp(times, self.times, column) for column in self._columns]
+        own, *columns = self._columns
+        columns = [np.interp(times, own, column) for column in columns]
         under_way = (times >= self.times[0]) & (times <= self.times[-1])
         return np.stack((*columns[:3], *(under_way * speed for speed in columns[3:])), axis=1)
 
