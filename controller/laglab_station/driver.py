@@ -74,7 +74,18 @@ class Driver:
     def warning(self) -> str | None:
         """The estimator's after the last measurements, once. Raises PluginFailedError."""
         unjudged, self.is_unjudged = self.is_unjudged, False
-        return self._controller.warning(self._control) if unjudged else None
+        if not unjudged:
+            return None
+        return self._controller.warning(self._control) or self._too_late
+
+    @property
+    def _too_late(self) -> str | None:
+        """Measurements come, and change nothing."""
+        late, memory = self.measurement_delay, self._controller.kind.memory
+        if late is None or memory is None or late <= memory:
+            return None
+        name = self._config.estimator
+        return f"measurements come {late} ticks late: {name} uses none that is older than {memory}"
 
     def leave(self) -> None:
         """The robot is another's from now on."""

@@ -44,6 +44,14 @@ def test_noise_alone_is_no_alarm() -> None:
         assert station.alarms_raised == 0
 
 
+@pytest.mark.parametrize(("late", "warned"), [(1100, True), (1023, False)])
+def test_measurements_later_than_the_filter_remembers_are_told_of(late: int, warned: bool) -> None:
+    overrides = {"estimator.kind": "popf", "link.measurement_delay": late, "duration": 12.0}
+    warnings = laglab.run("lab", overrides).summary.warnings
+    told = f"tick {late}: measurements come {late} ticks late: popf uses none that is older than "
+    assert [each.startswith(told) for each in warnings if "ticks late" in each] == [True] * warned
+
+
 def test_the_alarm_is_in_table_warning_verdict_summary_figure_and_log(
     tmp_path: Path, ended: Callable[..., Any]
 ) -> None:
