@@ -164,6 +164,8 @@ def test_one_schedule_serves_all_who_have_the_same_link():
         ({"pace": "realtime"}, "pace"),
         ({"link.command.bit_error_rate": 1e-5}, "bytes"),
         ({"link.event": [{"at": 1.0, "link": {"bandwidth": 9600}}]}, "bytes"),
+        ({"link.measurement_delay": 2100}, "remembers"),
+        ({"link.command_delay": 1024}, "remembers"),
     ],
 )
 def test_what_must_run_one_by_one_says_why(overrides, reason):

@@ -17,6 +17,7 @@ from laglab.runs.robot_side import link_fates
 from laglab.runs.station_side import station_config
 from laglab.scenario import Scenario
 from laglab.studies.many.schedule import schedule_of
+from laglab_control import MEMORY
 from laglab_control.batch import BATCHED, BatchController, Pose, Speeds, Symmetric
 from laglab_control.batch.impaired import IMPAIRED, ImpairedController, Timetable
 from laglab_fmu import CallError, OtherParameters
@@ -82,6 +83,9 @@ def why_one_by_one(scenario: Scenario) -> str | None:
         ),
         "one of its parameters is set for each by itself (plant.parameters)": not _are_common(
             scenario
+        ),
+        f"a delay is longer than the {MEMORY} ticks for which a station remembers (link)": (
+            max(link.n, link.m) >= MEMORY
         ),
         "there are no plans for many robots (plan)": link.plan > 0,
         "there is no play-out for many robots (playout)": bool(
