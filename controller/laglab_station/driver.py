@@ -85,7 +85,7 @@ class Driver:
         if late is None or memory is None or late <= memory:
             return None
         name = self._config.estimator
-        return f"measurements come {late} ticks late: {name} uses none that is older than {memory}"
+        return f"measurements come {late} ticks late: {name} remembers {memory}, and may use none"
 
     def leave(self) -> None:
         """The robot is another's from now on."""
