@@ -24,8 +24,10 @@ WRONG = {
     "[grid]\nnoise = [true, true]": "grid: noise: must have each value once",
     '[grid]\n"link.command" = [{ loss = 0.1 }]\n"link.command.loss" = [0.2]': "command.loss: "
     "link.command, too, says what it is: leave one out",
-    '[grid]\n"link.command.loss" = [0.2]\n"link.command" = [{ duplicate = 0.1 }]': "command.loss: "
+    '[grid]\n"link.command.loss" = [0.2]\n"link.command" = [{ loss = 0.1 }]': "command.loss: "
     "link.command, too, says what it is: leave one out",
+    '[grid]\n"plant.parameters" = [{ "a.b" = 1 }]\n"plant.parameters.a.b" = [2]': "parameters.a.b: "
+    "plant.parameters, too, says what it is: leave one out",
     '[grid]\n"plant.event" = [[{ at = 1.0 }]]\n"plant.event.0.at" = [2.0]': "plant.event.0.at: "
     "plant.event, too, says what it is: leave one out",
     "[grid]\nseed = [1]": "the seeds of a study are said by `seeds`",

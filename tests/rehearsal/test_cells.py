@@ -102,6 +102,14 @@ def test_a_row_begins_with_what_was_varied_and_has_the_columns_that_others_read(
     ]  # fmt: skip
 
 
+def test_a_grid_s_table_and_a_key_within_it_go_together_in_whatever_order() -> None:
+    grid = {"link.command": [{"loss": 0.1}], "link.command.duplicate": [0.2]}
+    for items in (list(grid.items()), list(grid.items())[::-1]):
+        (cell,) = Study(load("lab"), [1], dict(items)).cells()
+        command = cell.scenario.link.command
+        assert (command.loss, command.duplicate) == (0.1, 0.2)
+
+
 def test_every_seed_starts_somewhere_of_its_own_within_the_radius(cells: list[Cell]) -> None:
     u = np.random.default_rng((5, 3)).random(3)
     x, y, theta = cells[0].starts()[1]

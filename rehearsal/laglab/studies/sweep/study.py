@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import combinations, islice, product
+from itertools import islice, permutations, product
 from pathlib import Path
 from typing import Any
 
@@ -170,24 +170,22 @@ def _axis(key: str, values: Sequence[object]) -> tuple[object, ...]:
 
 
 def _refuse_said_twice(grid: Mapping[str, Sequence[object]]) -> None:
-    """Raises StudyError: of what two keys say the later holds, and rows would tell of both."""
-    for earlier, later in combinations(grid, 2):
-        within, whole = sorted((earlier, later), key=len, reverse=True)
-        if not within.startswith(f"{whole}."):
-            continue
-        way = within.removeprefix(f"{whole}.").split(".")
-        if later == whole or any(_says(value, way) for value in grid[whole]):
+    """Raises StudyError: what a table and a key within it both say is what the key says, whichever
+    comes first, and rows would tell of both."""
+    for whole, within in permutations(grid, 2):
+        way = within.removeprefix(f"{whole}.")
+        if way != within and any(_says(value, way) for value in grid[whole]):
             raise StudyError(f"grid: {within}: {whole}, too, says what it is: leave one out")
 
 
-def _says(value: object, way: Sequence[str]) -> bool:
-    for part in way:
-        if isinstance(value, list):
-            return True  # keys count its elements
-        if not (isinstance(value, Mapping) and part in value):
-            return False
-        value = value[part]
-    return True
+def _says(value: object, way: str) -> bool:
+    """Whether a table says what is at this dotted key in it, or around that."""
+    if isinstance(value, list):
+        return True  # keys count its elements
+    return isinstance(value, Mapping) and any(
+        way == key or (way.startswith(f"{key}.") and _says(value[key], way[len(key) + 1 :]))
+        for key in value
+    )
 
 
 def _listed(key: str, values: object) -> list[Any]:
