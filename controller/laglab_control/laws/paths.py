@@ -43,10 +43,11 @@ class Path(Protocol):
         return Reference(*self.sampled(np.array([time]))[0].tolist())
 
 
-def _check_shape(shape: "Circle | Eight", *measures: float) -> None:
+def _check_shape(shape: "Circle | Eight", *measures: str) -> None:
     check(shape)
-    if not all(LEAST <= measure <= MOST for measure in measures):
-        raise ConfigError(f"its measures must be from {LEAST:g} to {MOST:g}")
+    for name in measures:
+        if not LEAST <= (value := getattr(shape, name)) <= MOST:
+            raise ConfigError(f"{name} must be from {LEAST:g} to {MOST:g}, not {value!r}")
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,7 @@ class Circle(Path):
     speed: Positive
 
     def __post_init__(self) -> None:
-        _check_shape(self, self.radius, self.speed)
+        _check_shape(self, "radius", "speed")
 
     def sampled(self, times: Vector) -> Matrix:
         """At `times` (n,)."""
@@ -90,7 +91,7 @@ class Eight(Path):
     speed: Positive
 
     def __post_init__(self) -> None:
-        _check_shape(self, self.width, self.speed)
+        _check_shape(self, "width", "speed")
 
     @property
     def _rate(self) -> float:
