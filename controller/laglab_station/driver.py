@@ -74,13 +74,11 @@ class Driver:
     def warning(self) -> str | None:
         """The estimator's after the last measurements, once. Raises PluginFailedError."""
         unjudged, self.is_unjudged = self.is_unjudged, False
-        if not unjudged:
-            return None
-        return self._controller.warning(self._control) or self._too_late
+        return self._controller.warning(self._control) if unjudged else None
 
     @property
-    def _too_late(self) -> str | None:
-        """Measurements come, and change nothing."""
+    def too_late(self) -> str | None:
+        """That measurements come later than the estimator remembers, and change nothing."""
         late, memory = self.measurement_delay, self._controller.kind.memory
         if late is None or memory is None or late <= memory:
             return None

@@ -294,5 +294,7 @@ class Station:
             problem = str(error)
         if problem:
             self.warn("estimator", f"tick {self.tick}: {problem}")
+        if late := self._driver.too_late:
+            self.warn("late", f"tick {self.tick}: {late}")
         if self._driver.stands:
             self.warn("stands", f"tick {self.tick}: {STANDS}")

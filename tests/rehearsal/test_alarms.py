@@ -52,6 +52,16 @@ def test_measurements_later_than_the_filter_remembers_are_told_of(late: int, war
     assert [each.startswith(told) for each in warnings if "ticks late" in each] == [True] * warned
 
 
+def test_of_late_measurements_is_told_whatever_else_the_filter_warns_of() -> None:
+    late = {"distribution": "exponential", "mean": 0.3}
+    overrides = {"link.measurement_delay": 1000, "link.measurement.extra_delay": late}
+    warnings = laglab.run(
+        "lab", {**overrides, "estimator.kind": "popf", "duration": 12.0}
+    ).summary.warnings
+    assert ["popf's gain is" in each for each in warnings] == [True, False]
+    assert ["popf remembers 1023" in each for each in warnings] == [False, True]
+
+
 def test_the_alarm_is_in_table_warning_verdict_summary_figure_and_log(
     tmp_path: Path, ended: Callable[..., Any]
 ) -> None:
