@@ -9,7 +9,7 @@ from fmpy.model_description import ModelVariable
 from laglab import load, run
 from laglab_fmu import FmuFileError, WiringError
 from laglab_fmu.foreign import FmuFile, ForeignRobot, Wiring, check
-from laglab_fmu.foreign.start_values import starts
+from laglab_fmu.foreign.start_values import parameter_values, starts
 from laglab_fmu.foreign.wiring import Value
 
 TS = 0.01
@@ -102,6 +102,18 @@ def test_an_array_without_elements_is_no_number(fmus: Path) -> None:
     file.variables["pose"].shape = (0,)
     with pytest.raises(WiringError, match=r"outputs.x: pose of Sled.fmu is an array without elem"):
         check(file, Wiring(INPUTS, {**POSE, "x": "pose"}), TS)
+
+
+def test_a_text_of_an_array_is_not_told_by_itself(fmus: Path) -> None:
+    file = FmuFile.read(fmus / "Sled.fmu")
+    (gear,) = (each for each in file.description.modelVariables if each.name == "gear")
+    gear.type, gear.start = "String", None
+    wiring = Wiring(INPUTS, POSE, {}, {"gear[0]": "low"})
+    with pytest.raises(WiringError, match=r"gear\[0\] of Sled.fmu is no number: tell gear whole"):
+        check(file, wiring, TS)
+    assert parameter_values(file, Wiring(INPUTS, POSE, {}, {"gear": "low 1"})) == {
+        "gear": ["low", "1"]
+    }
 
 
 def test_one_start_value_is_that_of_all_elements() -> None:

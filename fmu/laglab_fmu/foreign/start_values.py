@@ -93,6 +93,10 @@ def _put(
     file: FmuFile, key: str, told: dict[str, list[Scalar]], element: Element, value: Value
 ) -> None:
     variable = element.variable
+    if variable.type not in (*REAL, *RANGES, "Boolean"):  # FMPy reads the first start text alone
+        raise WiringError(
+            f"{key}: {element.name} of {file.path.name} is no number: tell {variable.name} whole"
+        )
     values = told.setdefault(variable.name, starts(variable))
     values[element.offset] = _typed(file, key, element.name, variable, value)
 
