@@ -28,8 +28,6 @@ from laglab_protocol import (
 
 GREETED_AGAIN = 0.3
 """[s] A robot that says nothing for so long may have begun again, and wait to be greeted."""
-
-
 REPEATED = 4
 """So often no link brings the same tick by itself: a robot says it again."""
 

@@ -37,7 +37,9 @@ def in_lock_step(endpoint: Endpoint) -> Outcome:
     parameters = RobotParameters()
     with Robot.open(3, parameters) as robot:
         gateway = Gateway(FmuPlant(robot, parameters), GatewayConfig(0, 0, 100, 0.01))
-        return serve_lockstep(gateway, Surroundings(Listener(endpoint, Receiver()))).outcome
+        often = Patience(repeat_after=0.02)
+        around = Surroundings(Listener(endpoint, Receiver()), patience=often)
+        return serve_lockstep(gateway, around).outcome
 
 
 def test_a_robot_in_lock_step_is_not_taken_for_silent() -> None:
