@@ -5,6 +5,8 @@ import time
 from pathlib import Path
 from typing import Self
 
+from msgspec.structs import replace
+
 from laglab_conformance.forge import Forged
 from laglab_protocol import Codec, Endpoint, Frame, Heartbeat, Message, Sender, Settings, Signer
 
@@ -88,7 +90,8 @@ class Peer(threading.Thread):
             self.endpoint.send(Sender(self.system, self.component).frame(ALIVE))
 
     def settings(self) -> Settings:
-        return Settings(0.01, dialect=99 if self.fault == "speaks another dialect" else 3)
+        told = Settings(0.01)
+        return replace(told, dialect=99) if self.fault == "speaks another dialect" else told
 
     def framed(self, message: Message) -> bytes:
         raw = self.codec.sender.frame(message)

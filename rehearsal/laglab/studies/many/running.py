@@ -84,7 +84,7 @@ def why_one_by_one(scenario: Scenario) -> str | None:
         "one of its parameters is set for each by itself (plant.parameters)": not _are_common(
             scenario
         ),
-        f"a delay is longer than the {MEMORY} ticks for which a station remembers (link)": (
+        f"a delay is no shorter than the {MEMORY} ticks for which a station remembers (link)": (
             max(link.n, link.m) >= MEMORY
         ),
         "there are no plans for many robots (plan)": link.plan > 0,
