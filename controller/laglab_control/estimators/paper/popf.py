@@ -32,8 +32,8 @@ class Used(NamedTuple):
     own factor."""
     ticks: int
     """Bit i is set when z_{k-i} has been used."""
-    lateness: int = -1
-    """Of the latest one used at this tick [ticks]; -1 without any."""
+    lateness: int = 0
+    """Of the latest one used at this tick [ticks]; 0 without any."""
 
 
 class Correction(NamedTuple):
@@ -94,7 +94,7 @@ class Popf(Estimator[PopfState]):
         tick, x, P, prior, (left, past, used, _), *_ = state
         factor = self.model.A(x, u).dot(left)
         past = past.push(tick, Step(tick, prior, factor), factor)
-        used = used << 1 & (1 << self.memory) - 1
+        used = (used << 1) % (1 << self.memory)
         prior = Belief(*self.model.predict(x, P, u))
         return PopfState(tick + 1, *prior, prior, Used(identity(len(x)), past, used))
 
@@ -153,8 +153,6 @@ class Popf(Estimator[PopfState]):
     def warning(self, state: PopfState) -> str | None:
         """When the gain is above `delay_limit`."""
         lateness = state.used.lateness
-        if lateness < 0:
-            return None
         limit = delay_limit(lateness)
         largest = 1.0 - min(state.used.left.diagonal().tolist())
         if largest <= limit:
