@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from laglab_control import ESTIMATORS, InForce, Measured, RobotModel
+from laglab_control import ESTIMATORS, Ekf, InForce, Measured, RobotModel
+from laglab_control.estimators.delayed.rewinding import Rewinding
 
 ROBOT = RobotModel()
 TICKS, M = 40, 6
@@ -50,3 +51,19 @@ def test_what_was_right_is_not_run_again(name):
     a, b = run(estimator, INPUTS, told), run(estimator, INPUTS, {})
     np.testing.assert_array_equal(a.x, b.x)
     np.testing.assert_array_equal(a.P, b.P)
+
+
+@pytest.mark.parametrize("wrong", [0, 12, TICKS - 1])
+def test_it_runs_again_from_the_first_wrong_input_on_and_no_more(wrong):
+    again = []
+
+    class Telling(Ekf):
+        def predict(self, state, u):
+            again.append(state.tick)
+            return super().predict(state, u)
+
+    estimator = Rewinding(Telling(ROBOT))
+    state = run(estimator, INPUTS, {})
+    again.clear()
+    estimator.correct(state, [], [InForce(j, INPUTS[j] + (j == wrong)) for j in range(TICKS)])
+    assert again == list(range(wrong, TICKS))

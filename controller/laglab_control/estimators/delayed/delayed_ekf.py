@@ -92,7 +92,7 @@ class DelayedEkf(Estimator[DelayedState[W]]):
         measurements = by_sampling(measurements, state.tick)
         filtered, window = state.filtered, state.window
         newest = filtered.newest.tick
-        oldest = newest - min(filtered.length - 1, self.memory)
+        oldest = max(newest - self.memory, 0)
         known = {j + 1: u for j, u in inputs if oldest <= j < state.tick} if inputs else {}
         if (known and min(known) <= newest) or (measurements and measurements[0].tick <= newest):
             late = {s: z for s, z in reversed(measurements) if oldest <= s <= newest}
