@@ -96,11 +96,9 @@ class CalibratingEkf(Estimator[CalibratingState]):
     def learned(self, state: CalibratingState) -> tuple[Calibration, ...]:
         """Each b."""
         b, P = state.parameters
-        known = zip(b.tolist(), np.sqrt(np.diag(P)).tolist(), strict=True)
-        return tuple(
-            Calibration(name, *each)
-            for name, each in zip(self.parameters.names, known, strict=True)
-        )
+        deviations = np.sqrt(np.diag(P)).tolist()
+        known = zip(self.parameters.names, b.tolist(), deviations, strict=True)
+        return tuple(Calibration(*each) for each in known)
 
     @cached_property
     def model(self) -> CalibratedRobot:
