@@ -37,8 +37,9 @@ PARTS = {
     "estimators": Part(
         "controller/laglab_control/estimators/**/*.py",
         tuple(f"tests/controller/test_{name}.py" for name in (
-            "estimators", "linear", "exact", "known_facts", "sliding", "rewinding", "calibrating",
-            "tue_predictor",
+            "by_hand", "forgetting", "backdated", "delayed", "calibrated", "estimators_stand",
+            "linear", "exact", "errata", "sliding", "tue_predictor", "rewinding", "estimators",
+            "known_facts", "calibrating",
         )),
     ),
     "queues": Part(
