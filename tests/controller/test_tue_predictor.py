@@ -70,6 +70,15 @@ def test_it_claims_and_weighs_nothing() -> None:
     state = predictor.correct(predictor.start(np.zeros(3), P), [Measured(0, AWAY)])
     assert state.P is None
     assert predictor.innovation(state) is None
+    assert not predictor.is_watchable
+
+
+def test_with_no_gains_told_each_is_2_a_second() -> None:
+    """Ts K = 0.02 of what is seen, for a copy that looks along x."""
+    predictor = TuePredictor(MODEL)
+    z = np.array([1.0, -2.0, 3.0])
+    state = predictor.correct(predictor.start(np.zeros(3), P), [Measured(0, z)])
+    np.testing.assert_allclose(state.x, 0.02 * z, rtol=0, atol=1e-15)
 
 
 def test_the_heading_is_wrapped_and_the_gains_are_the_robots_own() -> None:
