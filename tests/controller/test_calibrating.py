@@ -183,6 +183,18 @@ def test_a_long_delay_costs_no_accuracy():
     assert np.abs(answer.estimates[-1] - poses[-1]).max() < 0.01
 
 
+def test_to_be_told_what_was_believed_moves_nothing():
+    """The inputs since the newest measurement are put right at the b that is known by then."""
+    parameters = WheelScales(L, wander=0.0)
+    inputs, poses, _ = make_record(parameters, [0.1, 0.1], ticks=1200)
+    estimator = CalibratingEkf(ROBOT, parameters)
+    state = estimator.start(START, P0)
+    for k, arrived in enumerate(constant_delay(poses, 400)):
+        state = estimator.correct(estimator.predict(state, inputs[k - 1]) if k else state, arrived)
+    told = estimator.correct(state, [], [InForce(1000, inputs[1000])])
+    assert_same(told.x, told.P, state.x, state.P, 0.01)
+
+
 def test_begun_again_it_keeps_what_it_has_learned():
     parameters = WheelScales(L)
     inputs, _, z = make_record(parameters, [0.1, 0.1])

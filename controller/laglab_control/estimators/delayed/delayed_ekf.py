@@ -100,7 +100,7 @@ class DelayedEkf(Estimator[DelayedState[W]]):
         for s, z in measurements:
             filtered, window = self._advance(filtered, window, s, z, known)
         if known and max(known) > filtered.newest.tick:
-            window = self._put_right(filtered.newest.tick, window, known)
+            window = _put_right(state.windows, filtered.newest.tick, window, known)
         innovation = _innovation(filtered, measurements[-1].tick) if measurements else None
         return DelayedState(state.tick, filtered, window, state.windows, innovation)
 
@@ -123,15 +123,6 @@ class DelayedEkf(Estimator[DelayedState[W]]):
             tick += 1
             filtered = self._extend(filtered, known.get(tick, u), z if tick == s else None)
         return filtered, window
-
-    def _put_right(self, newest: int, window: Window[W], known: Mapping[int, Vector]) -> Window[W]:
-        """The window from tick `newest` on with those of its inputs that were wrong put right;
-        `known` by the tick that each led to."""
-        right = window.emptied()
-        for tick, u in enumerate(window, start=newest + 1):
-            told = known.get(tick, u)
-            right = right.push(told, self.windows.over(told))
-        return right
 
     def _extend(self, filtered: Log[Filtered], u: Vector, z: Vector | None) -> Log[Filtered]:
         newest = filtered.newest
@@ -160,6 +151,18 @@ class DelayedEkf(Estimator[DelayedState[W]]):
             else:
                 filtered = self._extend(filtered, u, z)
         return filtered
+
+
+def _put_right(
+    windows: Windows[W], newest: int, window: Window[W], known: Mapping[int, Vector]
+) -> Window[W]:
+    """The window from tick `newest` on with those of its inputs that were wrong put right;
+    `known` by the tick that each led to."""
+    right = window.emptied()
+    for tick, u in enumerate(window, start=newest + 1):
+        told = known.get(tick, u)
+        right = right.push(told, windows.over(told))
+    return right
 
 
 def _innovation(filtered: Log[Filtered], s: int) -> Innovation | None:
