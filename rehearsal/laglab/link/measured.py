@@ -123,7 +123,8 @@ def read_measured(path: Path, interval: float, fixed: tuple[int, int] = (0, 0)) 
     """A link.csv, of a measurement or of a run, a tick every `interval` [s].
 
     `fixed` are the delays [ticks] that it leaves out, command and measurement: a run's n and m. Of
-    several frames or copies in one tick the first that came counts. Raises LinkFileError.
+    several frames in one tick the first that was sent counts, for what went beside it does not make
+    up for it; of its copies the first that came. Raises LinkFileError.
     """
     try:
         rows = read_link_log(path)
@@ -137,7 +138,8 @@ def read_measured(path: Path, interval: float, fixed: tuple[int, int] = (0, 0)) 
     return MeasuredLink(command, measurement, interval)
 
 
-def _flow(rows: list[LinkRow], interval: float, fixed: int) -> Flow:
+def _flow(every: list[LinkRow], interval: float, fixed: int) -> Flow:
+    rows = [row for row in every if row.frame == 0]
     if not rows:
         return Flow(np.empty(0), np.empty(0), 0)
     first = rows[0].tick
