@@ -227,3 +227,29 @@ def test_states_are_not_touched() -> None:
     for state, (x, P) in zip(states, kept, strict=True):
         assert np.array_equal(state.x, x)
         assert np.array_equal(state.P, P)
+
+
+@pytest.mark.parametrize("bad", [(np.nan, 0.0, 0.0), (0.0, 0.0, np.nan), (0.0, 0.0, np.inf)])
+@pytest.mark.parametrize("settled", [None, 20])
+def test_of_what_is_not_finite_there_may_be_any_number(
+    bad: tuple[float, float, float], settled: int | None
+) -> None:
+    """It says nothing, also where nothing is proved: nobody can begin again from there."""
+    guard, measured = guarded(), sampled(driven(60), seed=7)
+    state = guard.start(np.zeros(3), P_0)
+    for k, (tick, z) in enumerate(measured[1:], start=1):
+        state = guard.predict(state, U)
+        said = Measured(tick, np.array(bad) if 30 <= k < 40 else z)
+        state = guard.correct(state, [said], (), settled)
+        assert state.alarm is None
+        assert np.isfinite(state.x).all()
+    assert state.gated == 10
+
+
+def test_who_learns_is_asked_for_what_must_not_be_overlooked() -> None:
+    """Not the estimator that it took over from, which does not know its states."""
+    learner = ESTIMATORS["calibrating-ekf"].make(MODEL)
+    guard = Guard(ESTIMATORS["popf"].make(MODEL), MODEL, learner)
+    last = followed(guard, sampled(worn(250), seed=9))[-1]
+    assert last.learning
+    assert guard.warning(last) is None

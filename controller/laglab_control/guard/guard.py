@@ -192,8 +192,8 @@ class Guard(Estimator[Watched]):
         return self._active(state).innovation(state.state)
 
     def warning(self, state: Watched) -> str | None:
-        """The estimator's own."""
-        return None if state.aside is not None else self.estimator.warning(state.state)
+        """As whoever estimates now has it."""
+        return self._active(state).warning(state.state)
 
     def _active(self, state: Watched) -> Estimator[Any]:
         if state.learning and self.learner:
@@ -222,6 +222,9 @@ class Guard(Estimator[Watched]):
         s, z = measured
         if s in state.seen or s < state.origin:
             return state
+        if not all(map(math.isfinite, z.tolist())):  # says nothing
+            seen, gated = state.seen.and_of(s), state.gated + 1
+            return state.judged(state.state, state.evidence, state.lag, seen, gated)
         active = self._active(state)
         tried = active.correct(state.state, [Measured(s - state.origin, z)])
         innovation = active.innovation(tried)
@@ -240,7 +243,7 @@ class Guard(Estimator[Watched]):
             evidence = weighed(evidence, v, nis)
             lag = lagging(evidence, weights, lag)
             found = contradiction(evidence, lag)
-        is_wild = not nis <= WILD  # nor is what is not finite used
+        is_wild = not nis <= WILD  # so is what is not finite
         taken, gated = (state.state, state.gated + 1) if is_wild else (tried, state.gated)
         state = state.judged(taken, evidence, lag, seen, gated)
         if found:
