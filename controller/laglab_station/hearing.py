@@ -136,8 +136,12 @@ def measured(messages: Sequence[Measurement], first: int, tick: int) -> list[Mea
 
 
 def echoes(messages: Sequence[Measurement], first: int, tick: int) -> list[Echo]:
-    """The commands that were in force just before each was sampled."""
-    return [_echo(message, first) for message in messages if first < message.tick <= tick]
+    """The commands that were in force just before each was sampled, as far as it tells them."""
+    return [
+        _echo(message, first)
+        for message in messages
+        if first < message.tick <= tick and all(map(isfinite, message.speeds))
+    ]
 
 
 def recalled(messages: Sequence[protocol.Applied], first: int, tick: int) -> list[InForce]:

@@ -1,5 +1,7 @@
 """What the robot's messages tell, in ticks that are counted from the station's first."""
 
+from math import inf, nan
+
 from laglab_protocol import Applied, Measurement
 from laglab_station.hearing import echoes, recalled
 
@@ -15,3 +17,12 @@ def test_a_measurement_echoes_the_tick_before_it_from_the_first_on() -> None:
     ticks = ((10, 9), (11, 9), (14, 10), (30, 12))
     told = [Measurement(0.0, 0.0, 0.0, 0.1, 0.2, tick, made) for tick, made in ticks]
     assert [each[::2] for each in echoes(told, 10, 20)] == [(0, None), (3, 0)]
+
+
+def test_a_measurement_that_does_not_tell_what_was_in_force_echoes_nothing() -> None:
+    """The robot is asked for it, as for any that was lost."""
+    told = [
+        Measurement(0.0, 0.0, 0.0, v, omega, tick, 9)
+        for tick, v, omega in ((11, nan, 0.0), (12, 0.0, inf), (13, 0.1, 0.2))
+    ]
+    assert [each.tick for each in echoes(told, 0, 20)] == [12]
