@@ -178,8 +178,8 @@ def hear(
     tick, sent, n, told, in_flight, ahead, plans, stood = flight
     told, inputs = told.after(tick, echoes, recalled)
     seen = told.usual_delay(otherwise=flight.usual_delay)
-    if plans and seen >= n:  # the robot is that far on in its plans
-        plans, seen = plans.late(seen - n), n
+    if plans:  # the robot is that far on in them
+        plans, seen = plans.late(max(seen - n, 0)), min(seen, n)
     stands = told.has_stood(seen) and _was_to_drive(flight, told.known)
     flight = Flight(tick, sent, seen, told, in_flight, ahead, plans, stands)
     if seen == n and stands == stood:

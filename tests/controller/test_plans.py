@@ -139,6 +139,17 @@ def test_a_robot_that_follows_sooner_than_told_is_believed() -> None:
     assert (flight.command_delay, flight.usual_delay) == (4, 4)
 
 
+def test_who_was_late_and_is_sooner_than_told_is_no_longer_late() -> None:
+    flight = take_off(MODEL, 6, H)
+    for k in range(20):
+        flight, _ = send(MODEL, flight, np.array((float(k), 0.0)), entries(k))
+    usual = []
+    for tick, made in ((9, 0), (10, 6), (11, 7)):
+        flight, _ = hear(MODEL, flight, [Echo(tick, np.array((float(made), 0.0)), made)])
+        usual.append(flight.usual_delay)
+    assert usual == [9, 9, 4]
+
+
 @pytest.mark.parametrize(("silent", "doubted"), [(H, False), (H + 20, True)])
 def test_as_long_as_plans_reach_silence_is_no_reason_to_doubt(silent: int, doubted: bool) -> None:
     flight = take_off(MODEL, 2, H)
