@@ -5,13 +5,32 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from laglab_control import Controller, Echo, Measured, PolarLaw, RobotModel, StationConfig
-from laglab_control.flight import FEW, GIVEN_UP, Told
+from laglab_control import (
+    Controller,
+    Echo,
+    InForce,
+    Measured,
+    PolarLaw,
+    RobotModel,
+    StationConfig,
+)
+from laglab_control.flight import (
+    FEW,
+    GIVEN_UP,
+    RECENT,
+    Told,
+    believed_sum,
+    hear,
+    send,
+    sent_for,
+    take_off,
+)
 from laglab_protocol import NO_COMMAND, Measurement, Receiver, Sender, Tick, frames_in
 from laglab_station import Station
 
 START = (-3.0, -3.0, 0.0)
 LAW = PolarLaw()
+MODEL = RobotModel()
 
 
 class Link:
@@ -109,6 +128,60 @@ def test_up_to_where_the_inputs_are_settled():
     assert Told(known=50, missing=gap[:FEW]).settled == 50
     assert Told(known=15 + GIVEN_UP, missing=gap).settled == 15
     assert Told(known=20 + GIVEN_UP, missing=gap).settled == 20 + GIVEN_UP
+
+
+def numbered(n, count):
+    """After `count` commands (1, 10), (2, 20) ..., of which each is to take n ticks."""
+    flight = take_off(MODEL, n)
+    for k in range(count):
+        flight, _ = send(MODEL, flight, np.array((k + 1.0, 10.0 * (k + 1))))
+    return flight
+
+
+def test_the_inputs_believed_are_the_commands_n_ticks_later_from_the_first_on():
+    flight = numbered(3, 5)
+    assert [sent_for(flight, tick)[0] for tick in range(5)] == [0.0, 0.0, 0.0, 1.0, 2.0]
+    assert [believed_sum(flight, since) for since in (0, 3, 4, 5)] == [
+        (3.0, 30.0),
+        (3.0, 30.0),
+        (2.0, 20.0),
+        (0.0, 0.0),
+    ]
+
+
+def test_with_another_n_all_that_is_on_its_way_is_believed_to_take_it_at_once():
+    flight, inputs = hear(MODEL, numbered(2, 6), [Echo(4, np.array((1.0, 10.0)), 0)])
+    assert flight.command_delay == 4
+    assert [u[0] for u in flight.in_flight] == [3.0, 4.0, 5.0, 6.0]
+    assert [(each.tick, each.u[0]) for each in inputs] == [(4, 1.0), (5, 2.0)]
+    flight, inputs = hear(MODEL, flight, [Echo(5, np.array((2.0, 20.0)), 1)])
+    assert [(each.tick, each.u[0]) for each in inputs] == [(5, 2.0)]
+
+
+def test_the_first_command_that_takes_no_time_tells_of_it_too():
+    flight, _ = hear(MODEL, numbered(4, 1), [Echo(0, np.array((1.0, 10.0)), 0)])
+    assert (flight.command_delay, flight.told.known, flight.told.missing) == (0, 0, ())
+
+
+def test_n_is_the_median_and_a_delay_is_noticed_after_however_many_equal_ones():
+    assert Told(recent=(9, 1, 2, 4, 3), spread=1.0).usual_delay(otherwise=0) == 3
+    told = Told(recent=(4,) * RECENT, newest=50, known=54)
+    told, _ = told.after(60, [Echo(57, np.zeros(2), 51)], [])
+    assert told.recent == (4,) * (RECENT - 1) + (6,)
+    assert told.spread == pytest.approx(np.std(told.recent))
+
+
+def test_what_nobody_told_of_is_known_tick_by_tick_and_the_input_before_it():
+    u = [np.array((k + 1.0, 0.0)) for k in range(20)]
+    told, _ = Told().after(6, [Echo(2, u[2], None)], [])
+    assert (told.missing, told.before.tolist(), told.usual) == ((0, 1), [0.0, 0.0], 3)
+    told, _ = told.after(9, [Echo(5, u[5], None)], [])
+    assert (told.missing, told.before.tolist()) == ((0, 1, 3, 4), [0.0, 0.0])
+    again, _ = told.after(12, [Echo(5, u[5], None)], [])
+    assert again == told
+    told, _ = told.after(12, [], [InForce(tick, u[tick]) for tick in (0, 1, 3, 4)])
+    told, _ = told.after(13, [Echo(8, u[8], None)], [])
+    assert (told.missing, told.before.tolist()) == ((6, 7), u[5].tolist())
 
 
 @settings(max_examples=20)
