@@ -6,7 +6,7 @@ import pytest
 from laglab_control import Echo, InForce, RobotModel
 from laglab_control.doubt import PATIENCE, doubt
 from laglab_control.flight import Flight, hear, send, take_off
-from laglab_control.model import Vector
+from laglab_control.model import Matrix, Vector
 
 MODEL = RobotModel()
 Ts = MODEL.sample_time
@@ -113,3 +113,67 @@ def test_of_ticks_that_were_lost_too_until_the_robot_tells() -> None:
     flight, _ = hear(MODEL, flight, [], recalled)
     assert flight.told.missing == ()
     assert doubt(flight, MODEL, X) is None
+
+
+def of(*missed: tuple[float, float, float]) -> Matrix:
+    """The sum of d d^T, each d of what is missed: forward, turned, and the way over which, in m
+    and rad; turned by the heading of X."""
+    total = np.zeros((3, 3))
+    heading = X[2]
+    c, s = np.cos(heading), np.sin(heading)
+    for distance, turn, length in missed:
+        d = np.array([[c, -s], [s, c]]) @ (distance, length * turn / 2)
+        total += np.outer((*d, turn), (*d, turn))
+    return total
+
+
+CURVED = [np.array((0.5 + 0.01 * k, 0.02 * k)) for k in range(160)]
+
+
+def in_force(ticks: range) -> Matrix:
+    """v and omega of CURVED there, N ticks later than sent (ticks, 2)."""
+    return np.array([CURVED[tick - N] for tick in ticks])
+
+
+def test_scattered_delays_count_by_their_deviation() -> None:
+    flight = flown(CURVED, lates=[3] * 5 + [4] * 5)
+    told, spread = flight.told, np.std(flight.told.recent)
+    n = flight.command_delay
+    v, omega = CURVED[flight.tick - 1 - n] - told.in_force
+    length = Ts * (flight.tick - 1 - told.known) * CURVED[flight.tick - 1 - n][0]
+    expected = of((Ts * spread * v, Ts * spread * omega, length))
+    assert told.missing == ()
+    np.testing.assert_allclose(doubt(flight, MODEL, X), expected, rtol=1e-9)
+
+
+@pytest.mark.parametrize("silent", [PATIENCE + 1, 60])
+def test_in_silence_it_may_have_held_the_last_input_or_stopped(silent: int) -> None:
+    """By itself after half a second, of which so far perhaps nothing is over."""
+    flight = flown(CURVED, silent=silent)
+    known, last = flight.told.known, flight.tick
+    believed = in_force(range(known + 1, last))
+    v, omega = Ts * (believed - in_force(range(known, known + 1))).sum(axis=0)
+    held = (v, omega, Ts * believed[:, 0].sum())
+    v, omega = Ts * believed[50:].sum(axis=0)
+    np.testing.assert_allclose(doubt(flight, MODEL, X), of(held, (v, omega, v)), rtol=1e-9)
+
+
+def test_of_what_was_not_told_the_last_input_before_may_have_been_held() -> None:
+    flight = flown(CURVED, silent=20)
+    before, v = flight.told.known, flight.told.in_force[0]
+    flight = told(flight, flight.tick - M, CURVED[flight.tick - M - N])
+    lost = range(before + 1, flight.tick - M)
+    assert flight.told.missing == tuple(lost)
+    distance, turn = Ts * (in_force(lost) - in_force(range(before, before + 1))).sum(axis=0)
+    expected = of((distance, turn, Ts * len(lost) * v))
+    np.testing.assert_allclose(doubt(flight, MODEL, X), expected, rtol=1e-9)
+
+
+def test_where_nothing_is_only_believed_scattered_delays_make_no_difference() -> None:
+    flight = flown(CURVED, lates=[3] * 5 + [4] * 5)
+    tick = flight.tick - 1
+    flight, _ = hear(
+        MODEL, flight, [Echo(t, CURVED[t - N], t - N) for t in range(tick - M, tick + 1)]
+    )
+    assert flight.told.spread > 0
+    np.testing.assert_array_equal(doubt(flight, MODEL, X), np.zeros((3, 3)))

@@ -138,6 +138,7 @@ def test_where_the_estimate_lags_behind_one_that_learns_takes_over() -> None:
     last = states[len(poses) - 1]
     assert last.learning
     assert guard.learned(states[0]) == ()
+    assert len(guard.learned(last)) == 2
     for scale in guard.learned(last):
         assert abs(scale.value - 0.1) < 4 * scale.deviation
     assert np.abs(MODEL.innovation(poses[-1], last.x)).max() < 0.08
