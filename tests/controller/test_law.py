@@ -43,6 +43,12 @@ def test_goal_tolerance_is_entered_at_one_distance_and_left_at_twice(distance, w
         assert (v, omega) == (0.0, pytest.approx(6 / 2 * (0.2 - 0.5)))
 
 
+@pytest.mark.parametrize(("distance", "was_at_goal"), [(0.25, False), (0.5, True)])
+def test_at_the_very_edge_of_the_tolerance_all_stays_as_it_was(distance, was_at_goal):
+    law = PolarLaw(goal_tolerance=0.25)
+    assert law.drive((distance, 0.0, 0.0), 0.0, was_at_goal).memory is was_at_goal
+
+
 def test_at_the_goal_the_shorter_way_round_is_turned():
     law = PolarLaw(goal_tolerance=0.03)
     turned = law.drive((0.0, 0.0, math.pi + 0.1), 0.0, None).omega
@@ -83,6 +89,16 @@ def test_limits_on_acceleration_hold_between_one_command_and_the_next(asked, las
     assert abs(omega - last.omega) <= 0.3 + 1e-9
     wanted = min(max(asked.v, -1.0), 1.0)
     assert min(last.v, wanted) - 1e-9 <= v <= max(last.v, wanted) + 1e-9
+
+
+@pytest.mark.parametrize(
+    ("last", "asked", "sent"),
+    [(1.0, 3.0, 1.5), (1.0, -3.0, 0.5), (-1.0, -3.0, -1.5), (-1.0, 3.0, -0.5), (1.0, 1.25, 1.25)],
+)
+def test_towards_what_is_asked_it_goes_by_what_a_tick_allows(last, asked, sent):
+    limits = SpeedLimits(accel_max=5.0, alpha_max=5.0)
+    assert limits.limited(Demand(asked, 7.0), None, Demand(last, 7.0), 0.1) == Demand(sent, 7.0)
+    assert limits.limited(Demand(7.0, asked), None, Demand(7.0, last), 0.1) == Demand(7.0, sent)
 
 
 class Counting:
