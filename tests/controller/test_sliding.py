@@ -61,3 +61,15 @@ def test_no_version_of_a_log_ever_changes(steps):
 def test_an_empty_log_has_no_newest():
     with pytest.raises(IndexError):
         _ = logged().newest
+
+
+def test_what_goes_on_from_a_log_that_was_cut_leaves_out_what_came_since():
+    log = logged(1, 2, 3)
+    older, _ = cut(log, 2)
+    assert list(newest_first(append(older, 9, limit=100))) == [9, 2, 1]
+    assert list(newest_first(log)) == [3, 2, 1]
+
+
+def test_one_more_costs_no_copy():
+    log = logged(1, 2)
+    assert append(log, 3, limit=100).items is log.items
