@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from laglab_control import Circle, ConfigError, Eight, RobotModel, TrackingLaw, Waypoints, wrap
+from laglab_control.laws.paths import unwound
 
 PATHS = [Circle((1.0, -2.0), 1.5, 0.5), Eight((0.5, 0.25), 3.0, 0.6)]
 
@@ -33,6 +34,30 @@ def test_how_large_and_how_fast_they_are():
     assert eight[:, 3].max() == pytest.approx(0.6)
 
 
+@pytest.mark.parametrize("path", PATHS, ids=lambda path: type(path).__name__)
+def test_an_outline_leads_around_once_and_the_heading_never_jumps(path):
+    outline = path.outline()
+    steps = np.hypot(*np.diff(outline, axis=0).T)
+    assert outline.shape[1] == 2
+    assert outline[-1] == pytest.approx(outline[0])
+    assert steps.max() < 0.05
+    length = 2 * math.pi * 1.5 if isinstance(path, Circle) else 3.0 / 2 * 6.097
+    assert steps.sum() == pytest.approx(length, rel=0.01)
+    assert np.abs(np.diff(path.sampled(np.linspace(0.0, 60.0, 6001))[:, 2])).max() < 0.1
+
+
+@pytest.mark.parametrize(
+    ("beyond", "left"),
+    [(0.0, 0.0), (1.0, 1.0), (math.tau, 0.0), (-2 * math.tau, 0.0), (math.tau - 1.5, -1.5)],
+)
+def test_a_jump_is_what_is_near_a_turn_from_where_the_speed_leads(beyond, left):
+    times, omega = np.array([0.0, 2.0, 4.0]), np.array([1.0, 3.0, 0.0])
+    theta = np.array([0.5, 4.5 + beyond, 7.5 + beyond])
+    assert unwound(times, theta, omega) == pytest.approx([0.5, 4.5 + left, 7.5 + left])
+    far = np.array([0.5, 4.5 + 3.0, 7.5 + 3.0])
+    assert unwound(times, far, omega) == pytest.approx(far)
+
+
 def test_between_the_rows_of_a_table_it_is_linear_and_outside_it_stands():
     path = Waypoints(
         np.array([1.0, 3.0, 4.0]),
@@ -41,6 +66,8 @@ def test_between_the_rows_of_a_table_it_is_linear_and_outside_it_stands():
     assert path.at(2.0) == (1.0, 0.5, 2.0, 1.0, pytest.approx(0.2))
     assert path.at(4.0) == (2.0, 2.0, 5.0, 1.0, 0.2)
     assert path.at(9.0) == (2.0, 2.0, 5.0, 0.0, 0.0)
+    assert path.at(1.0) == (0.0, 0.0, 0.0, 0.5, 0.1)
+    assert path.outline().tolist() == [[0, 0], [2, 1], [2, 2]]
     assert path.at(0.0) == (0.0, 0.0, 0.0, 0.0, 0.0)
 
 
