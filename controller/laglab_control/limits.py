@@ -18,10 +18,12 @@ ROUNDING = 1e-9
 
 
 class Limit(NamedTuple):
-    """What a finite number must be: `least` or more, or `above` it; `whole`: without a fraction."""
+    """What a finite number must be: `least` or more, or `above` it, and at most `most`; `whole`:
+    without a fraction."""
 
     least: float
     above: bool = False
+    most: float = math.inf
     whole: bool = False
     optional: bool = False
     """Whether None will do."""
@@ -29,7 +31,8 @@ class Limit(NamedTuple):
     def __str__(self) -> str:
         number = "a whole number" if self.whole else "a finite number"
         limited = f"above {self.least:g}" if self.above else f"of {self.least:g} or more"
-        return f"{number} {limited}" + (", or None" if self.optional else "")
+        bounded = f", and at most {self.most:g}" if self.most < math.inf else ""
+        return f"{number} {limited}{bounded}" + (", or None" if self.optional else "")
 
     def allows(self, value: object) -> bool:
         """Whether `value` is such a number; True and False are none."""
@@ -42,7 +45,7 @@ class Limit(NamedTuple):
         except OverflowError:
             return False
         enough = number > self.least if self.above else number >= self.least
-        return enough and math.isfinite(number)
+        return enough and number <= self.most and math.isfinite(number)
 
 
 Positive = Annotated[float, Limit(0, above=True)]

@@ -79,11 +79,11 @@ class Driver:
     @property
     def too_late(self) -> str | None:
         """That measurements come later than the estimator remembers, and change nothing."""
-        late, memory = self.measurement_delay, self._controller.kind.memory
-        if late is None or memory is None or late <= memory:
+        late, most = self.measurement_delay, self._controller.kind.most_late
+        if late is None or most is None or late <= most:
             return None
         name = self._config.estimator
-        return f"measurements come {late} ticks late: {name} remembers {memory}, and may use none"
+        return f"measurements come {late} ticks late: {name} remembers {most}, and may use none"
 
     def leave(self) -> None:
         """The robot is another's from now on."""

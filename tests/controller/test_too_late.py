@@ -7,7 +7,7 @@ from laglab_control import Measured
 from laglab_control.estimators.family import ESTIMATORS
 from laglab_control.robot import RobotModel
 
-REMEMBERS = {name: kind.memory for name, kind in ESTIMATORS.items() if kind.memory is not None}
+MOST = {name: kind.most_late for name, kind in ESTIMATORS.items() if kind.most_late is not None}
 
 
 def uses(name: str, late: int) -> bool:
@@ -20,13 +20,13 @@ def uses(name: str, late: int) -> bool:
     return not np.array_equal(estimator.correct(state, [measured]).x, state.x)
 
 
-@pytest.mark.parametrize(("name", "memory"), REMEMBERS.items())
-def test_a_kinds_memory_is_how_late_a_measurement_may_come(name, memory):
-    assert uses(name, memory)
-    assert not uses(name, 2048 if name == "tue-predictor" else memory + 1)
+@pytest.mark.parametrize(("name", "most"), MOST.items())
+def test_a_kind_tells_how_late_a_measurement_may_come(name, most):
+    assert uses(name, most)
+    assert not uses(name, 2048 if name == "tue-predictor" else most + 1)
 
 
 @pytest.mark.parametrize("name", ["raw", "ekf"])
 def test_who_takes_late_for_fresh_takes_any(name):
-    assert ESTIMATORS[name].memory is None
+    assert ESTIMATORS[name].most_late is None
     assert name == "raw" or uses(name, 2900)

@@ -31,7 +31,7 @@ class EstimatorKind(NamedTuple):
     """Whether it gives an estimate of the present, which can be extrapolated and reported."""
     learner: Callable[[RobotModel], Estimator[Any]] | None = None
     """What takes over when a guard finds that its model is wrong."""
-    memory: int | None = None
+    most_late: int | None = None
     """How many ticks late a measurement may come, to be used; None: as late as it likes, or nobody
     knows."""
     admits: Mapping[str, str] = MappingProxyType({})
@@ -42,9 +42,6 @@ LATE_FOR_FRESH = {
     "delays": "it compares a late measurement with where the robot is",
     "NEES": "so it is surer than it may be",
 }
-
-ALIVE = 2 * MEMORY
-"""[ticks] An EKF that lives in the past is MEMORY ticks back at most; from there it goes as far."""
 
 ESTIMATORS: Mapping[str, EstimatorKind] = {
     "raw": EstimatorKind(
@@ -61,35 +58,35 @@ ESTIMATORS: Mapping[str, EstimatorKind] = {
     "popf": EstimatorKind(
         "the paper's filter",
         lambda model: Rewinding(Popf(model)),
-        memory=MEMORY - 1,
+        most_late=Popf.memory - 1,
     ),
     "popf-printed": EstimatorKind(
         "the paper's filter with the innovation as (28) prints it",
         lambda model: Rewinding(Popf(model, innovation_at_k=True)),
-        memory=MEMORY - 1,
+        most_late=Popf.memory - 1,
         admits=LATE_FOR_FRESH,
     ),
     "popf-exact": EstimatorKind(
         "the structure of popf with the true cross-covariances",
         lambda model: Rewinding(PopfExact(model)),
-        memory=PopfExact.memory - 1,
+        most_late=PopfExact.memory - 1,
     ),
     "tue-predictor": EstimatorKind(
         "a copy of the robot, pulled to where the robot was seen to have been",
         lambda model: Rewinding(TuePredictor(model)),
-        memory=MEMORY - 1,
+        most_late=MEMORY - 1,
     ),
     "delayed-ekf": EstimatorKind(
         "the optimum: an EKF at the measurement's tick, carried forward over the known inputs",
         lambda model: DelayedEkf(model, RigidMotions(model)),
         # Something is known to be wrong by then: it may be larger, and change faster, than usual.
         learner=lambda model: CalibratingEkf(model, WheelScales(model.track, 0.1, 0.1)),
-        memory=ALIVE,
+        most_late=2 * DelayedEkf.memory,  # back to where it is at most, and from there as far
     ),
     "calibrating-ekf": EstimatorKind(
         "delayed-ekf that learns how far each wheel leads: for worn robots, less exact on others",
         lambda model: CalibratingEkf(model, WheelScales(model.track)),
-        memory=ALIVE,
+        most_late=2 * CalibratingEkf.memory,
     ),
 }
 

@@ -3,18 +3,18 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import Annotated, NamedTuple, Protocol
 
 import numpy as np
 
 from laglab_control.errors import ConfigError
-from laglab_control.limits import Positive, check
+from laglab_control.limits import Limit, check
 from laglab_control.model import Matrix, Vector
 
 OUTLINE = 400
 """Points by which a closed path is drawn."""
-LEAST, MOST = 1e-9, 1e9
-"""Of a shape's measures [m, m/s]: with those beyond, what follows from them is no number."""
+Measure = Annotated[float, Limit(1e-9, most=1e9)]
+"""Of a shape [m, m/s]: with one beyond, what follows from it is no number."""
 
 
 class Reference(NamedTuple):
@@ -43,13 +43,6 @@ class Path(Protocol):
         return Reference(*self.sampled(np.array([time]))[0].tolist())
 
 
-def _check_shape(shape: "Circle | Eight", *measures: str) -> None:
-    check(shape)
-    for name in measures:
-        if not LEAST <= (value := getattr(shape, name)) <= MOST:
-            raise ConfigError(f"{name} must be from {LEAST:g} to {MOST:g}, not {value!r}")
-
-
 @dataclass(frozen=True)
 class Circle(Path):
     """Counter-clockwise at constant `speed` [m/s], from the point on the right of the centre.
@@ -58,11 +51,11 @@ class Circle(Path):
     """
 
     centre: tuple[float, float]
-    radius: Positive
-    speed: Positive
+    radius: Measure
+    speed: Measure
 
     def __post_init__(self) -> None:
-        _check_shape(self, "radius", "speed")
+        check(self)
 
     def sampled(self, times: Vector) -> Matrix:
         """At `times` (n,)."""
@@ -87,11 +80,11 @@ class Eight(Path):
     """
 
     centre: tuple[float, float]
-    width: Positive
-    speed: Positive
+    width: Measure
+    speed: Measure
 
     def __post_init__(self) -> None:
-        _check_shape(self, "width", "speed")
+        check(self)
 
     @property
     def _rate(self) -> float:

@@ -101,7 +101,7 @@ def _robot(rng: np.random.Generator, base: str) -> Overrides:
         "plant.fmi": _one_of(rng, (2, 3)),
         "plant.integration": _one_of(rng, ("euler", "exact")),
     }
-    if load(base).plant.kind == "robot":  # others have no such wheels
+    if load(base).plant.has_two_wheels:
         robot["plant.wheel_radius_error"] = round(float(rng.uniform(-0.1, 0.1)), 3)
     if _by_chance(rng, 0.2):
         by = [round(float(each), 2) for each in rng.uniform(-0.5, 0.5, 3)]

@@ -221,8 +221,8 @@ class PlantTable(Table):
                 raise ValueError(f"{name}: there is no fmu that it could be of")
         if self.parameters and not self.is_mapped:
             raise ValueError(f"parameters: {self.kind} has none that are set by name")
-        for name in TWO_WHEELS:
-            if getattr(self, name) and not (self.kind == "robot" and self.fmu is None):
+        for name in () if self.has_two_wheels else TWO_WHEELS:
+            if getattr(self, name):
                 raise ValueError(f"{name}: only the robot of two wheels has it, not {self.called}")
         if ours and self.options:
             raise ValueError("options: only a robot that somebody brings as a class has some")
@@ -238,6 +238,11 @@ class PlantTable(Table):
     def is_mapped(self) -> bool:
         """Whether it is an FMU whose variables go by a map of names: anyone's, or ours but one."""
         return self.fmu is not None or self.kind in set(SHIPPED) - {"robot"}
+
+    @property
+    def has_two_wheels(self) -> bool:
+        """Whether it is the paper's."""
+        return self.fmu is None and self.kind == "robot"
 
     @property
     def ships(self) -> bool:
